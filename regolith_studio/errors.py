@@ -68,10 +68,7 @@ def check_not_stopped() -> None:
     A library may have swallowed it, or made an ordinary error of it, which then looks like a fault of one
     particle (matplotlib's ValueError, a callback of Qhull). What tidies up after an interruption may write.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        If a signal has asked this process to end.
+    Raises KeyboardInterrupt if a signal has asked this process to end.
     """
     if stop_requests and not isinstance(sys.exc_info()[1], KeyboardInterrupt | GeneratorExit):
         raise KeyboardInterrupt
@@ -147,11 +144,8 @@ _LONGEST_VALUE = 40
 def format_validation_error(problems: Sequence[Mapping[str, Any]]) -> str:
     """Words for the entry of a document that pydantic refuses: where it stands, and what it must be.
 
-    Parameters
-    ----------
-    problems
-        What its ``ValidationError.errors()`` returns. Where an entry may be of several kinds, the kind
-        whose inner entries are complained of is taken for the one that was meant.
+    ``problems``: what its ``ValidationError.errors()`` returns. Where an entry may be of several kinds, the
+    kind whose inner entries are complained of is taken for the one that was meant.
     """
     first = problems[0]
     near = [each for each in problems if each["loc"][:2] == first["loc"][:2]]

@@ -35,10 +35,7 @@ def chapter(name: str) -> str:
 def with_results(text: str) -> str:
     """Markdown whose blocks of results are filled in.
 
-    Raises
-    ------
-    KeyError
-        If a field is not in the file of results.
+    Raises KeyError if a field is not in the file of results.
     """
     return _BLOCK.sub(lambda block: _FIELD.sub(lambda field: _cell(block[1], field[1]), block[2]), text)
 

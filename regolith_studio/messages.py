@@ -16,12 +16,7 @@ def N_(text: str) -> str:  # noqa: N802  # the usual name of this mark
 class Number(str):
     """A number in a sentence: formatted as in English, and with the signs of the language where it is shown.
 
-    Parameters
-    ----------
-    value, form
-        As for ``format``.
-    unit
-        Behind it.
+    ``value``, ``form``: as for ``format``. ``unit``: behind it.
     """
 
     __slots__ = ()
@@ -41,12 +36,8 @@ class Number(str):
 class Message(str):
     """An English sentence that remembers its template and its values.
 
-    Parameters
-    ----------
-    template
-        With ``{placeholders}``, marked by :func:`N_`.
-    values
-        By placeholder; those that are messages themselves are translated too.
+    ``template``: with ``{placeholders}``, marked by :func:`N_`. ``values``: by placeholder; those that are
+    messages themselves are translated too.
     """
 
     template: str

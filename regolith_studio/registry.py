@@ -36,17 +36,11 @@ class Registry(Mapping[str, T], Generic[T]):
     A row of another package is left out, with a line in the log and a sentence in :func:`plugin_problems`, if
     it cannot be imported, is no such row, or has the key of a row that is there already.
 
-    Parameters
-    ----------
-    package
-        Dotted name of the folder whose modules are looked through.
-    attribute
-        Name of the row in a module, ``METHOD`` say; modules without it hold no row.
-    group
-        Of the entry points, without the leading ``regolith_studio.``.
-    order
-        Sorting key of a row. Without one the rows stand in the order of the modules' names, and those of
-        other packages after them.
+    - ``package``: dotted name of the folder whose modules are looked through.
+    - ``attribute``: name of the row in a module, ``METHOD`` say; modules without it hold no row.
+    - ``group``: of the entry points, without the leading ``regolith_studio.``.
+    - ``order``: sorting key of a row. Without one the rows stand in the order of the modules' names, and
+      those of other packages after them.
     """
 
     def __init__(

@@ -14,10 +14,7 @@ _PACKAGE = Path(__file__).resolve().parent
 def resource_folder() -> Path:
     """The folder ``resources``: inside the installed package, or beside it in a checkout.
 
-    Raises
-    ------
-    MissingRequirement
-        If the installation holds no resources.
+    Raises MissingRequirement if the installation holds no resources.
     """
     for folder in (_PACKAGE / "_resources", _PACKAGE.parent / "resources"):
         if folder.is_dir():
@@ -42,10 +39,7 @@ def results_folder() -> Path:
 def resource(*parts: str) -> Path:
     """Path of one shipped file, for example ``resource("presets", "all.json")``.
 
-    Raises
-    ------
-    MissingRequirement
-        If there is no such file or folder.
+    Raises MissingRequirement if there is no such file or folder.
     """
     path = resource_folder().joinpath(*parts)
     if not path.exists():

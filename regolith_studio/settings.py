@@ -32,30 +32,17 @@ def setting(
 ) -> Any:
     """A field of a settings dataclass.
 
-    Parameters
-    ----------
-    default
-        ``None`` for a number that may be left out.
-    label
-        Name in forms and messages.
-    tip
-        What it does, in a sentence: tool tip, help of the option, description in the schema.
-    symbol
-        Shorter name before the field of a form.
-    unit, factor
-        Of a number: unit that forms show, and the factor that converts into it.
-    minimum, maximum
-        Range of a number, both included.
-    step, decimals
-        Smallest change of a number in a form, and how many decimals it shows.
-    slider
-        Ends of the slider that a form has for a number.
-    choices
-        Label of each key that a text or whole number may be.
-    option
-        Name on the command line where it differs, such as ``--facets``.
-    metavar
-        What stands for its value in the help of the command line; the keys, or ``N``, by default.
+    - ``default``: ``None`` for a number that may be left out.
+    - ``label``: name in forms and messages.
+    - ``tip``: what it does, in a sentence: tool tip, help of the option, description in the schema.
+    - ``symbol``: shorter name before the field of a form.
+    - ``unit``, ``factor``: of a number: unit that forms show, and the factor that converts into it.
+    - ``minimum``, ``maximum``: range of a number, both included.
+    - ``step``, ``decimals``: smallest change of a number in a form, and how many decimals it shows.
+    - ``slider``: ends of the slider that a form has for a number.
+    - ``choices``: label of each key that a text or whole number may be.
+    - ``option``: name on the command line where it differs, such as ``--facets``.
+    - ``metavar``: what stands for its value in the help of the command line; the keys, or ``N``, by default.
     """
     metadata = {
         "label": label,
@@ -97,10 +84,7 @@ def is_whole(value: Any) -> bool:
 def check_settings(values: Any) -> None:
     """Check each setting of a dataclass against its type, range and choices.
 
-    Raises
-    ------
-    InputError
-        Naming the first value that is wrong, and what is allowed.
+    Raises InputError naming the first value that is wrong, and what is allowed.
     """
     for each in settings_of_kind(values):
         value, known = getattr(values, each.name), each.metadata

@@ -28,22 +28,13 @@ MAX_RECORD_BYTES = 20_000_000
 class CatalogEntry:
     """One folder of the catalog.
 
-    Parameters
-    ----------
-    folder, kind
-        Path, and whether it holds a ``dataset``, an ``export`` or a ``result``.
-    name
-        Of the dataset, or a description of the export or result.
-    sha256
-        Of the dataset itself, or of the one it was made from; empty if unknown.
-    detail
-        One line of text.
-    facts
-        Provenance, text by label.
-    mesh
-        The shape with the largest weight, of volume 1.
-    problem
-        Why the folder cannot be used, in one sentence; otherwise empty.
+    - ``folder``, ``kind``: path, and whether it holds a ``dataset``, an ``export`` or a ``result``.
+    - ``name``: of the dataset, or a description of the export or result.
+    - ``sha256``: of the dataset itself, or of the one it was made from; empty if unknown.
+    - ``detail``: one line of text.
+    - ``facts``: provenance, text by label.
+    - ``mesh``: the shape with the largest weight, of volume 1.
+    - ``problem``: why the folder cannot be used, in one sentence; otherwise empty.
     """
 
     folder: Path
@@ -66,10 +57,7 @@ class CatalogEntry:
 def scan_catalog(root: Path | str) -> Iterator[CatalogEntry]:
     """Datasets, exports and results in and below `root`, sorted by path; hidden folders are skipped.
 
-    Raises
-    ------
-    DatasetError
-        If `root` is not a folder.
+    Raises DatasetError if `root` is not a folder.
     """
     top = Path(root).resolve()
     if not top.is_dir():

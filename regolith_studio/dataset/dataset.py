@@ -28,14 +28,9 @@ from regolith_studio.geometry.particle import Source
 class Frame:
     """Pose of a unit-volume shape in its particle: x_shape = rotation @ (x_particle - centroid) / scale.
 
-    Parameters
-    ----------
-    rotation
-        Proper rotation, shape (3, 3); its rows are the shape's axes in the particle's frame.
-    centroid
-        Centre of mass of the polyhedron in the particle's frame, in micrometres, shape (3,).
-    scale
-        Cube root of the polyhedron's volume, in micrometres.
+    - ``rotation``: proper rotation, shape (3, 3); its rows are the shape's axes in the particle's frame.
+    - ``centroid``: centre of mass of the polyhedron in the particle's frame, in micrometres, shape (3,).
+    - ``scale``: cube root of the polyhedron's volume, in micrometres.
     """
 
     rotation: FloatArray
@@ -54,17 +49,10 @@ class Frame:
 def aligned(polyhedron: Polyhedron, centre: FloatArray | None = None) -> tuple[Polyhedron, Frame]:
     """The polyhedron at unit volume about its centroid, longest axis along x, shortest along z; and its pose.
 
-    Parameters
-    ----------
-    polyhedron
-        About an origin in its interior, in micrometres; of a compound the union is aligned.
-    centre
-        Position of that origin in the particle's frame; (0, 0, 0) if not given.
+    ``polyhedron``: about an origin in its interior, in micrometres; of a compound the union is aligned.
+    ``centre``: position of that origin in the particle's frame; (0, 0, 0) if not given.
 
-    Raises
-    ------
-    GeometryError
-        If the polyhedron encloses no volume.
+    Raises GeometryError if the polyhedron encloses no volume.
     """
     if not polyhedron.volume > 0.0:
         raise GeometryError("The polyhedron encloses no volume.")
@@ -130,24 +118,15 @@ SHAPE_TOLERANCE = 1e-9
 class Representative:
     """One class i of a dataset.
 
-    Parameters
-    ----------
-    name
-        Of the chosen particle; unique within the dataset.
-    shape
-        Unit volume, centroid at the origin, principal axes along x, y, z; those of the union of a compound.
-    weight
-        alpha_i.
-    sizes
-        F_i, of equivalent diameters in micrometres.
-    frame
-        Pose of the shape in its particle.
-    n_members
-        Number of particles that the class stands for.
-    approximation
-        How the particle was coarsened, or ``None`` if it was a polyhedron already.
-    group, source
-        Of the particle.
+    - ``name``: of the chosen particle; unique within the dataset.
+    - ``shape``: unit volume, centroid at the origin, principal axes along x, y, z; those of the union of a
+      compound.
+    - ``weight``: alpha_i.
+    - ``sizes``: f_i, of equivalent diameters in micrometres.
+    - ``frame``: pose of the shape in its particle.
+    - ``n_members``: number of particles that the class stands for.
+    - ``approximation``: how the particle was coarsened, or ``None`` if it was a polyhedron already.
+    - ``group``, ``source``: of the particle.
     """
 
     name: str
@@ -172,10 +151,7 @@ class Representative:
     def convex(self) -> ConvexPolyhedron:
         """The shape, if it is a single convex polyhedron.
 
-        Raises
-        ------
-        DatasetError
-            If it is a compound.
+        Raises DatasetError if it is a compound.
         """
         if isinstance(self.shape, ConvexPolyhedron):
             return self.shape
@@ -188,27 +164,16 @@ class Representative:
 class Provenance:
     """Origin of a dataset (the metadata of section 2.5).
 
-    Parameters
-    ----------
-    description
-        Free text.
-    processing_steps
-        One sentence a step, in order.
-    seed
-        Of the random numbers.
-    model
-        Stochastic model of the shapes, or ``None`` for measured ones.
-    l_max
-        Highest degree of the spherical harmonics.
-    angular_power_spectrum_um2
-        A_l for l = 0..l_max, in square micrometres: variance per order at degree l (real orthonormal
-        harmonics).
-    coarsening
-        Settings of the coarsening.
-    representation
-        How well the shapes reproduce the population, if they were chosen from one.
-    software
-        Versions by package name.
+    - ``description``: free text.
+    - ``processing_steps``: one sentence a step, in order.
+    - ``seed``: of the random numbers.
+    - ``model``: stochastic model of the shapes, or ``None`` for measured ones.
+    - ``l_max``: highest degree of the spherical harmonics.
+    - ``angular_power_spectrum_um2``: a_l for l = 0..l_max, in square micrometres: variance per order at
+      degree l (real orthonormal harmonics).
+    - ``coarsening``: settings of the coarsening.
+    - ``representation``: how well the shapes reproduce the population, if they were chosen from one.
+    - ``software``: versions by package name.
     """
 
     description: str = ""
@@ -226,16 +191,10 @@ class Provenance:
 class Dataset:
     """Representative particles with weights and sizes.
 
-    Parameters
-    ----------
-    name
-        Chosen by the user.
-    representatives
-        At least one; their weights add up to 1.
-    weighting
-        Whether the class weights count particles or their volume.
-    provenance
-        Origin of the data.
+    - ``name``: chosen by the user.
+    - ``representatives``: at least one; their weights add up to 1.
+    - ``weighting``: whether the class weights count particles or their volume.
+    - ``provenance``: origin of the data.
     """
 
     name: str

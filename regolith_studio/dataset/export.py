@@ -30,24 +30,17 @@ PARTS = ("contact", "test", "times")
 class ExportOptions:
     """Options of all exporters; each uses those that its format can hold.
 
-    Parameters
-    ----------
-    contact, test, times
-        Of the simulated test: Tables 1 and 2, and the waiting times of scripts.
-    coarse_graining_factor
-        Factor on all diameters (section 2.6); 1 keeps the particles' sizes, the paper takes 10.
-    n_particles
-        Particles drawn for formats that list individual particles.
-    seed
-        Of the draw.
-    rounding
-        Radius of rounded edges, as a share of the smallest distance between a shape's centre and a facet,
-        for formats that need rounded edges.
-    n_spheres
-        Spheres per shape, for formats that have only spheres.
-    max_error
-        Largest Jaccard distance between a shape and its spheres; the fewest spheres that reach it take the
-        place of `n_spheres`. 0: `n_spheres`.
+    - ``contact``, ``test``, ``times``: of the simulated test: Tables 1 and 2, and the waiting times of
+      scripts.
+    - ``coarse_graining_factor``: factor on all diameters (section 2.6); 1 keeps the particles' sizes, the
+      paper takes 10.
+    - ``n_particles``: particles drawn for formats that list individual particles.
+    - ``seed``: of the draw.
+    - ``rounding``: radius of rounded edges, as a share of the smallest distance between a shape's centre and
+      a facet, for formats that need rounded edges.
+    - ``n_spheres``: spheres per shape, for formats that have only spheres.
+    - ``max_error``: largest Jaccard distance between a shape and its spheres; the fewest spheres that reach
+      it take the place of `n_spheres`. 0: `n_spheres`.
     """
 
     contact: ContactParameters = field(default_factory=ContactParameters)
@@ -79,10 +72,7 @@ class ExportOptions:
     def replaced(self, **changes: Any) -> "ExportOptions":
         """A copy with other values; fields of `contact`, `test` and `times` by their own names.
 
-        Raises
-        ------
-        InputError
-            If there is no such setting, or a value cannot be used.
+        Raises InputError if there is no such setting, or a value cannot be used.
         """
         own: dict[str, Any] = {}
         for name, value in changes.items():
@@ -100,29 +90,21 @@ class ExportOptions:
 class Exporter:
     """One format; a module of ``exporters`` that defines ``EXPORTER`` is one.
 
-    Parameters
-    ----------
-    key, label
-        Identifier in options, and name for display.
-    units
-        Units of the files, in one line.
-    carries, loses
-        What the format holds of a dataset and what it cannot hold; shown before the export and in the README.
-    load_command
-        Command, or line of an input file, that uses the files; ``{folder}`` is replaced by their folder,
-        ``{shell}`` by the same quoted for a shell.
-    files
-        Content of every file by its relative path; equal input gives equal bytes. The entry :data:`NOTES` is
-        not a file but text for the README, such as measured errors.
-    alters
-        How shapes are changed, in one sentence; empty if they are exact. Such an export must be accepted.
-    convex_only
-        Why the format cannot hold compounds, in one sentence; empty if it can. A dataset with compounds is
-        refused before anything is written.
-    fills_mass
-        Whether its script makes as many particles as have the mass of the test; others list `n_particles`.
-    general
-        Whether it is for viewers and own programs instead of a DEM program.
+    - ``key``, ``label``: identifier in options, and name for display.
+    - ``units``: units of the files, in one line.
+    - ``carries``, ``loses``: what the format holds of a dataset and what it cannot hold; shown before the
+      export and in the README.
+    - ``load_command``: command, or line of an input file, that uses the files; ``{folder}`` is replaced by
+      their folder, ``{shell}`` by the same quoted for a shell.
+    - ``files``: content of every file by its relative path; equal input gives equal bytes. The entry
+      :data:`NOTES` is not a file but text for the README, such as measured errors.
+    - ``alters``: how shapes are changed, in one sentence; empty if they are exact. Such an export must be
+      accepted.
+    - ``convex_only``: why the format cannot hold compounds, in one sentence; empty if it can. A dataset with
+      compounds is refused before anything is written.
+    - ``fills_mass``: whether its script makes as many particles as have the mass of the test; others list
+      `n_particles`.
+    - ``general``: whether it is for viewers and own programs instead of a DEM program.
     """
 
     key: str
@@ -175,18 +157,11 @@ def write_export(
 ) -> ExportResult:
     """Write one format into `folder`, which then holds nothing else, or is unchanged if an error occurs.
 
-    Parameters
-    ----------
-    folder
-        New, empty, or holding an export of this program and nothing else.
-    accept_loss
-        Required for formats that change the shapes.
+    ``folder``: new, empty, or holding an export of this program and nothing else. ``accept_loss``: required
+    for formats that change the shapes.
 
-    Raises
-    ------
-    DatasetError
-        If the format changes shapes and that was not accepted, cannot hold the dataset's compounds, the
-        folder holds anything else, or something cannot be written.
+    Raises DatasetError if the format changes shapes and that was not accepted, cannot hold the dataset's
+    compounds, the folder holds anything else, or something cannot be written.
     """
     with prepared_export(dataset, exporter, folder, options, accept_loss=accept_loss) as finish:
         return finish()
@@ -204,10 +179,7 @@ def prepared_export(
 ) -> Iterator[Callable[[], ExportResult]]:
     """As :func:`write_export`, complete under a hidden name; what it yields lets it take its place.
 
-    Parameters
-    ----------
-    dataset_hash
-        Of the dataset's folder, stored in the record.
+    ``dataset_hash``: of the dataset's folder, stored in the record.
     """
     chosen, target = options or ExportOptions(), Path(folder).resolve()
     check_loss_accepted(exporter, accept_loss)
@@ -244,10 +216,7 @@ def load_command(exporter: Exporter, folder: Path) -> str:
 def check_loss_accepted(exporter: Exporter, accept_loss: bool) -> None:
     """Check that a format which changes the shapes was accepted.
 
-    Raises
-    ------
-    DatasetError
-        If it was not; the message says how shapes are changed.
+    Raises DatasetError if it was not; the message says how shapes are changed.
     """
     if exporter.alters and not accept_loss:
         raise DatasetError(
@@ -259,10 +228,7 @@ def check_loss_accepted(exporter: Exporter, accept_loss: bool) -> None:
 def check_compounds(dataset: Dataset, exporters: Sequence[Exporter]) -> None:
     """Check that formats can hold the compounds of a dataset, if it has any.
 
-    Raises
-    ------
-    DatasetError
-        If one cannot; the message says why.
+    Raises DatasetError if one cannot; the message says why.
     """
     refusing = [each for each in exporters if each.convex_only]
     if refusing and dataset.compounds:
@@ -327,10 +293,7 @@ def _readme(
 def check_export_folder(target: Path, format_name: str) -> None:
     """Check that a folder is new, empty, or holds an export of this program in a format and nothing else.
 
-    Raises
-    ------
-    DatasetError
-        If it holds anything else.
+    Raises DatasetError if it holds anything else.
     """
     if not target.exists():
         return

@@ -50,10 +50,7 @@ MAX_MESH_BYTES = 50_000_000
 def read_document(folder: Path) -> DatasetDocument:
     """The checked ``dataset.json`` of a folder.
 
-    Raises
-    ------
-    DatasetError
-        If it is missing, too large or violates the schema.
+    Raises DatasetError if it is missing, too large or violates the schema.
     """
     path = folder / DOCUMENT
     try:
@@ -66,10 +63,7 @@ def read_document(folder: Path) -> DatasetDocument:
 def dataset_hash(folder: Path | str) -> str:
     """SHA-256 of ``dataset.json``, which contains those of the meshes; results of DEM refer to it.
 
-    Raises
-    ------
-    DatasetError
-        If the folder holds no dataset.
+    Raises DatasetError if the folder holds no dataset.
     """
     path = Path(folder) / DOCUMENT
     return hashlib.sha256(_read(path, MAX_DOCUMENT_BYTES)).hexdigest()
@@ -78,10 +72,7 @@ def dataset_hash(folder: Path | str) -> str:
 def read_mesh_bytes(folder: Path, file: str) -> bytes:
     """Content of a mesh file by its relative path, which the schema has checked.
 
-    Raises
-    ------
-    DatasetError
-        If it is missing, too large, or is a link to a file outside the folder.
+    Raises DatasetError if it is missing, too large, or is a link to a file outside the folder.
     """
     path = folder.joinpath(*file.split("/"))
     if not real_path(path).is_relative_to(real_path(folder)):
@@ -150,10 +141,7 @@ def check_replaceable(target: Path, overwrite: bool) -> None:
 
     A dataset of another version of the schema may be replaced like one of the present version.
 
-    Raises
-    ------
-    DatasetError
-        If it holds anything else than a dataset, or a dataset that must not be replaced.
+    Raises DatasetError if it holds anything else than a dataset, or a dataset that must not be replaced.
     """
     if not target.exists():
         return
@@ -218,12 +206,8 @@ _RECORD_BYTES, _FACET_BYTES = 1_150, 95
 class StoredShape:
     """One representative as it is stored in a dataset.
 
-    Parameters
-    ----------
-    record
-        Its entry in ``dataset.json``, without its weight, and paths and hashes of its files.
-    meshes
-        Binary STL of the shape, then of each part of a compound.
+    ``record``: its entry in ``dataset.json``, without its weight, and paths and hashes of its files.
+    ``meshes``: binary STL of the shape, then of each part of a compound.
     """
 
     record: Mapping[str, Any]
@@ -242,10 +226,7 @@ def _stored(representative: Representative) -> StoredShape:
 def check_count(count: int, n_facets: int) -> None:
     """Check, before hours of work, that a dataset would not be too large to be read.
 
-    Raises
-    ------
-    InputError
-        If it would, with the maximum number of particles.
+    Raises InputError if it would, with the maximum number of particles.
     """
     most = MAX_DOCUMENT_BYTES // (_RECORD_BYTES + _FACET_BYTES * n_facets)
     if count > most:
@@ -296,16 +277,10 @@ def write_stored(
 ) -> Path:
     """Write a dataset in which each of `count` shapes has the same weight.
 
-    Parameters
-    ----------
-    shapes
-        Returns a new iterator over all shapes in order; their names must differ.
+    ``shapes``: returns a new iterator over all shapes in order; their names must differ.
 
-    Raises
-    ------
-    DatasetError
-        If there is no shape, one violates the schema, the folder holds anything else than a dataset, or
-        something cannot be written.
+    Raises DatasetError if there is no shape, one violates the schema, the folder holds anything else than a
+    dataset, or something cannot be written.
     """
     if count < 1:
         raise DatasetError("A dataset needs at least one particle.")

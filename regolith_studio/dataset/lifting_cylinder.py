@@ -27,12 +27,8 @@ def scaled_cylinder(
 ) -> LiftingCylinderTest:
     """The cylinder scaled down for fewer particles, so that fill height over diameter is that of the paper.
 
-    Parameters
-    ----------
-    solid_volume
-        Of all particles, in m3.
-    min_diameter
-        Minimum diameter in metres: a few of the largest particles.
+    ``solid_volume``: of all particles, in m3. ``min_diameter``: minimum diameter in metres: a few of the
+    largest particles.
     """
     diameter = float((solid_volume / PACKED / (np.pi / 4 * FILL)) ** (1 / 3))
     diameter = min(test.diameter, max(diameter, min_diameter))
@@ -64,16 +60,11 @@ QUANTILES = 65
 class CylinderFilling:
     """The particles that fill the mass of a lifting-cylinder test.
 
-    Parameters
-    ----------
-    n_particles
-        Expected number.
-    mass
-        Of all particles, in kg.
-    median_diameter
-        By mass, after coarse graining, in micrometres.
-    sufficient_factor
-        Coarse-graining factor, of two digits, at which there are at most :data:`MANY_PARTICLES`.
+    - ``n_particles``: expected number.
+    - ``mass``: of all particles, in kg.
+    - ``median_diameter``: by mass, after coarse graining, in micrometres.
+    - ``sufficient_factor``: coarse-graining factor, of two digits, at which there are at most
+      :data:`MANY_PARTICLES`.
     """
 
     n_particles: float
@@ -87,12 +78,8 @@ def cylinder_filling(
 ) -> CylinderFilling:
     """Number and median size of the particles of a script that fills the test's mass.
 
-    Parameters
-    ----------
-    number_weights
-        Share of each class of the particles counted by number; divided by their sum.
-    sizes
-        Of each class, in micrometres.
+    ``number_weights``: share of each class of the particles counted by number; divided by their sum.
+    ``sizes``: of each class, in micrometres.
     """
     weights = np.asarray(number_weights) / np.sum(number_weights)
     cubes = np.array([each.mean_cube() for each in sizes])
@@ -121,10 +108,7 @@ TUBE_SIDES, TUBE_THICKNESS = 96, 0.05
 def tube_mesh(diameter: float, height: float) -> Mesh:
     """An upright tube on z = 0 as a closed surface; its inner polygon has the area of the circle.
 
-    Parameters
-    ----------
-    diameter
-        Inner.
+    ``diameter``: inner.
     """
     sides = TUBE_SIDES
     angles = 2 * np.pi * np.arange(sides) / sides

@@ -39,14 +39,10 @@ CENTRE_WEIGHT = 30.0
 class SphereMasses:
     """Masses at density 1 of a polyhedron of any size.
 
-    Parameters
-    ----------
-    values
-        Of each sphere, shape (n,); they add up to the volume.
-    centre_error
-        Distance of their centre from the centroid, in cube roots of the volume.
-    inertia_error
-        Largest difference of an entry of the tensor of inertia about the centroid, over the largest moment.
+    - ``values``: of each sphere, shape (n,); they add up to the volume.
+    - ``centre_error``: distance of their centre from the centroid, in cube roots of the volume.
+    - ``inertia_error``: largest difference of an entry of the tensor of inertia about the centroid, over the
+      largest moment.
     """
 
     values: FloatArray
@@ -114,14 +110,10 @@ _SCALING = np.array([1.0, 3.0, 3.0, 3.0] + [10.0] * 6)
 class SphereFitErrors:
     """Errors of a union of spheres that approximates a polyhedron.
 
-    Parameters
-    ----------
-    volume, area
-        Ratio of union and polyhedron minus 1.
-    inertia
-        Largest relative difference of a principal moment about the polyhedron's centroid, at equal mass.
-    jaccard
-        1 minus the shared volume over the volume of both together.
+    - ``volume``, ``area``: ratio of union and polyhedron minus 1.
+    - ``inertia``: largest relative difference of a principal moment about the polyhedron's centroid, at
+      equal mass.
+    - ``jaccard``: 1 minus the shared volume over the volume of both together.
     """
 
     volume: float
@@ -134,14 +126,9 @@ class SphereFitErrors:
 class UnionMoments:
     """Integrals over a union of spheres.
 
-    Parameters
-    ----------
-    values
-        Of 1, x, y, z, xx, xy, xz, yy, yz, zz, shape (10,).
-    gradient
-        Their derivatives by x, y, z, r of every sphere, shape (10, n, 4).
-    area
-        Of the outer surface.
+    - ``values``: of 1, x, y, z, xx, xy, xz, yy, yz, zz, shape (10,).
+    - ``gradient``: their derivatives by x, y, z, r of every sphere, shape (10, n, 4).
+    - ``area``: of the outer surface.
     """
 
     values: FloatArray
@@ -175,10 +162,7 @@ def fit_spheres(shape: Polyhedron, count: int) -> FloatArray:
 def fit_spheres_within(shape: Polyhedron, max_error: float) -> FloatArray:
     """The fewest spheres of :data:`COUNTS` whose Jaccard distance is at most `max_error`.
 
-    Raises
-    ------
-    InputError
-        If the largest number does not reach it.
+    Raises InputError if the largest number does not reach it.
     """
     error = 1.0
     for count in COUNTS:
@@ -301,14 +285,9 @@ class _Mismatch:
     The shape has volume 1 and its centroid at the origin. A point counts by the logistic function of its
     depth below the union's surface.
 
-    Parameters
-    ----------
-    points
-        Of the shape and a band around it, shape (m, 3).
-    signs
-        Share of a point in the volume, negative inside the shape, shape (m,).
-    monomials
-        At the points times their share, shape (m, 10).
+    - ``points``: of the shape and a band around it, shape (m, 3).
+    - ``signs``: share of a point in the volume, negative inside the shape, shape (m,).
+    - ``monomials``: at the points times their share, shape (m, 10).
     """
 
     points: FloatArray

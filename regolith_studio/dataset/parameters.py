@@ -40,25 +40,14 @@ def _number(
 class ContactParameters:
     """Contact parameters of Table 1. SI units.
 
-    Parameters
-    ----------
-    density
-        Of the particles, in kg/m^3.
-    youngs_modulus, poissons_ratio
-        Of their material, in Pa.
-    static_friction, dynamic_friction
-        Coulomb's coefficients.
-    rolling_friction
-        Coefficient of rolling resistance, as a fraction of the radius.
-    restitution
-        Of a normal impact.
-    surface_energy
-        Of the model of Johnson, Kendall and Roberts, in J/m^2.
+    - ``density``: of the particles, in kg/m^3.
+    - ``youngs_modulus``, ``poissons_ratio``: of their material, in Pa.
+    - ``static_friction``, ``dynamic_friction``: coulomb's coefficients.
+    - ``rolling_friction``: coefficient of rolling resistance, as a fraction of the radius.
+    - ``restitution``: of a normal impact.
+    - ``surface_energy``: of the model of Johnson, Kendall and Roberts, in J/m^2.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     density: float = _number(3075.0, N_("Particle density"), "g/cm³", 100.0, 3e4, N_("Table 1"), 1e-3)
@@ -78,23 +67,14 @@ class ContactParameters:
 class LiftingCylinderTest:
     """Lifting-cylinder test of Table 2: a filled cylinder is lifted off a plate. SI units.
 
-    Parameters
-    ----------
-    diameter, height
-        Of the cylinder.
-    mass
-        Of all particles, in kg.
-    lift_speed
-        In m/s.
-    wall_friction, plate_friction
-        Coulomb's coefficient between particles and cylinder, particles and plate.
-    gravity
-        In m/s^2; :data:`GRAVITIES` names some.
+    - ``diameter``, ``height``: of the cylinder.
+    - ``mass``: of all particles, in kg.
+    - ``lift_speed``: in m/s.
+    - ``wall_friction``, ``plate_friction``: coulomb's coefficient between particles and cylinder, particles
+      and plate.
+    - ``gravity``: in m/s^2; :data:`GRAVITIES` names some.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     diameter: float = _number(0.02, N_("Cylinder diameter"), "cm", 1e-5, 10.0, N_("Table 2"), 1e2)
@@ -118,17 +98,10 @@ class LiftingCylinderTest:
 class ScriptTimes:
     """Waiting times, in seconds, of scripts that cannot detect when the particles are at rest.
 
-    Parameters
-    ----------
-    settling_time
-        Before the cylinder is lifted.
-    resting_time
-        After the cylinder has risen by its own height.
+    ``settling_time``: before the cylinder is lifted. ``resting_time``: after the cylinder has risen by its
+    own height.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     settling_time: float = _number(1.0, N_("Settling time"), "s", 1e-4, 1e4)
@@ -155,17 +128,10 @@ def missing_in_paper(kind: type[Any]) -> tuple[str, ...]:
 def check_limits(settings: Any, what: str) -> None:
     """Check that every field with a ``minimum`` lies between it and its ``maximum``.
 
-    Parameters
-    ----------
-    settings
-        A dataclass; the metadata ``factor`` and ``unit`` of a field convert it for the message.
-    what
-        Name of such a field in the message, for example "MuJoCo setting".
+    ``settings``: a dataclass; the metadata ``factor`` and ``unit`` of a field convert it for the message.
+    ``what``: name of such a field in the message, for example "MuJoCo setting".
 
-    Raises
-    ------
-    InputError
-        Naming the first field that does not; NaN is refused too.
+    Raises InputError naming the first field that does not; NaN is refused too.
     """
     for each in fields(settings):
         limits = each.metadata

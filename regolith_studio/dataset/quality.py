@@ -97,15 +97,10 @@ class QualityPoint:
 class QualityCurve:
     """Error over the number of representatives.
 
-    Parameters
-    ----------
-    points
-        By ascending number.
-    noise
-        Expected distance between the population and its material: below it, more representatives reproduce
-        the sample and no longer the material.
-    n_particles
-        Of the population.
+    - ``points``: by ascending number.
+    - ``noise``: expected distance between the population and its material: below it, more representatives
+      reproduce the sample and no longer the material.
+    - ``n_particles``: of the population.
     """
 
     points: tuple[QualityPoint, ...]
@@ -141,10 +136,7 @@ def quality_steps(
 ) -> Generator[QualityPoint, None, QualityCurve]:
     """Choose representatives for each number and measure them; yields each point, returns the curve.
 
-    Raises
-    ------
-    InputError
-        If a number is larger than the population, or descriptors are missing.
+    Raises InputError if a number is larger than the population, or descriptors are missing.
     """
     ascending = sorted(set(counts))
     points, choices = [], []

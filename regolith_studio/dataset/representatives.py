@@ -27,16 +27,10 @@ LENGTHS = ("min_diameter", "max_diameter")
 class RepresentativeSelection:
     """Chosen particles of a population of n.
 
-    Parameters
-    ----------
-    chosen
-        Their indices in ascending order, shape (k,).
-    labels
-        For each particle the position of its representative in `chosen`, shape (n,).
-    classes
-        Weight, sizes and number of members of each, in the order of `chosen`.
-    weighting
-        What weights and sizes count.
+    - ``chosen``: their indices in ascending order, shape (k,).
+    - ``labels``: for each particle the position of its representative in `chosen`, shape (n,).
+    - ``classes``: weight, sizes and number of members of each, in the order of `chosen`.
+    - ``weighting``: what weights and sizes count.
     """
 
     chosen: IntArray
@@ -55,22 +49,14 @@ def choose_representatives(
 ) -> RepresentativeSelection:
     """The `n` particles that represent a population best, by k-medoids on standardised shape features.
 
-    Parameters
-    ----------
-    population
-        Descriptors of each particle, with at least the keys :data:`NEEDED`; micrometres.
-    weighting
-        ``number``: every particle counts the same, a class weighs its share of particles and F_i is the
-        distribution of its diameters. ``volume``: everything counts by volume.
-    size_importance
-        Weight of a standard deviation of ln d relative to one of a shape feature; 0 leaves the size to F_i.
-    seed
-        Used only for populations too large for a table of distances.
+    - ``population``: descriptors of each particle, with at least the keys :data:`NEEDED`; micrometres.
+    - ``weighting``: ``number``: every particle counts the same, a class weighs its share of particles and
+      F_i is the distribution of its diameters. ``volume``: everything counts by volume.
+    - ``size_importance``: weight of a standard deviation of ln d relative to one of a shape feature; 0
+      leaves the size to F_i.
+    - ``seed``: used only for populations too large for a table of distances.
 
-    Raises
-    ------
-    InputError
-        If there are fewer than `n` particles, or a descriptor is missing or not positive.
+    Raises InputError if there are fewer than `n` particles, or a descriptor is missing or not positive.
     """
     return next(
         representative_series(
@@ -89,10 +75,7 @@ def representative_series(
 ) -> Iterator[RepresentativeSelection]:
     """As :func:`choose_representatives` for each number of `counts`, with one table of distances.
 
-    Raises
-    ------
-    InputError
-        As there.
+    Raises InputError as there.
     """
     features = shape_features(population)
     diameters = equivalent_diameters(population)
@@ -241,27 +224,15 @@ def medoid_series(
 ) -> Iterator[tuple[IntArray, IntArray]]:
     """Medoids and the class of each point for each k of `counts`, by one table of distances and one BUILD.
 
-    Parameters
-    ----------
-    points
-        Shape (n, d); distances are Euclidean.
-    counts
-        Numbers of medoids, 1 to n.
-    weights
-        Weight of each point, shape (n,); 1 by default.
-    seed
-        Of the random subset of populations beyond :data:`MAX_TABLE_SIZE`; unused otherwise.
+    - ``points``: shape (n, d); distances are Euclidean.
+    - ``counts``: numbers of medoids, 1 to n.
+    - ``weights``: weight of each point, shape (n,); 1 by default.
+    - ``seed``: of the random subset of populations beyond :data:`MAX_TABLE_SIZE`; unused otherwise.
 
-    Returns
-    -------
-    Iterator
-        Indices of the medoids in ascending order, shape (k,), and for each point the position of its
-        nearest medoid, shape (n,).
+    Returns indices of the medoids in ascending order, shape (k,), and for each point the position of its
+    nearest medoid, shape (n,).
 
-    Raises
-    ------
-    InputError
-        If a count is not between 1 and n.
+    Raises InputError if a count is not between 1 and n.
     """
     n = len(points)
     for k in counts:

@@ -15,12 +15,7 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 class RoundedPolyhedron:
     """Minkowski sum of a core and a ball; its flat parts lie in the planes of the original facets.
 
-    Parameters
-    ----------
-    core
-        Convex polyhedron.
-    radius
-        Of the ball.
+    ``core``: convex polyhedron. ``radius``: of the ball.
     """
 
     core: ConvexPolyhedron

@@ -24,15 +24,10 @@ BLOCK = 100_000
 class DrawnParticles:
     """Particles drawn from a dataset.
 
-    Parameters
-    ----------
-    class_index
-        Which representative, shape (n,).
-    diameter
-        Equivalent diameter in micrometres, shape (n,).
-    orientation
-        Unit quaternions (w, x, y, z) from the shape's to the particle's axes, uniformly distributed,
-        shape (n, 4).
+    - ``class_index``: which representative, shape (n,).
+    - ``diameter``: equivalent diameter in micrometres, shape (n,).
+    - ``orientation``: unit quaternions (w, x, y, z) from the shape's to the particle's axes, uniformly
+      distributed, shape (n, 4).
     """
 
     class_index: IntArray
@@ -48,10 +43,7 @@ class DrawnParticles:
 def sample_dataset(dataset: Dataset, n: int, seed: int) -> DrawnParticles:
     """`n` independent particles, drawn by number whatever the weighting of the dataset.
 
-    Raises
-    ------
-    InputError
-        If `n` is negative.
+    Raises InputError if `n` is negative.
     """
     if n < 0:
         raise InputError(f"The number of particles must not be negative, got {n}.")
@@ -107,16 +99,10 @@ SPACING = 1.02
 class PackedParticles:
     """Particles in SI units after coarse graining, without contacts.
 
-    Parameters
-    ----------
-    class_index
-        Which representative, shape (n,).
-    diameter
-        Equivalent diameter in metres, shape (n,).
-    position
-        Of the centroids in metres, z up from 0, shape (n, 3).
-    orientation
-        Quaternions (w, x, y, z), shape (n, 4).
+    - ``class_index``: which representative, shape (n,).
+    - ``diameter``: equivalent diameter in metres, shape (n,).
+    - ``position``: of the centroids in metres, z up from 0, shape (n, 3).
+    - ``orientation``: quaternions (w, x, y, z), shape (n, 4).
     """
 
     class_index: IntArray
@@ -140,16 +126,10 @@ class PackedParticles:
 def pack_on_lattice(dataset: Dataset, options: ExportOptions, within: float | None = None) -> PackedParticles:
     """Draw ``options.n_particles`` and place them on a cubic lattice.
 
-    Parameters
-    ----------
-    within
-        Inner diameter in metres of an upright cylinder about the z axis that contains all; a square column
-        if not given.
+    ``within``: inner diameter in metres of an upright cylinder about the z axis that contains all; a square
+    column if not given.
 
-    Raises
-    ------
-    InputError
-        If a particle is too large for the cylinder.
+    Raises InputError if a particle is too large for the cylinder.
     """
     drawn, spacing = _drawn(dataset, options)
     metres = options.coarse_graining_factor * MICROMETRE

@@ -84,12 +84,8 @@ def head_document(name: str, weighting: Weighting, provenance: Provenance) -> di
 def parsed_document(text: str, where: str) -> DatasetDocument:
     """The checked content of a ``dataset.json``.
 
-    Raises
-    ------
-    SchemaVersionError
-        If it is of another version of the schema.
-    DatasetError
-        Naming the first entry that violates the schema.
+    Raises SchemaVersionError if it is of another version of the schema. Raises DatasetError naming the first
+    entry that violates the schema.
     """
     try:
         content = parse_strict_json(text, where)
@@ -113,10 +109,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
 def dataset_of(document: DatasetDocument, where: str) -> Dataset:
     """The dataset that a document describes.
 
-    Raises
-    ------
-    DatasetError
-        If half-spaces bound no unit volume or a frame is invalid.
+    Raises DatasetError if half-spaces bound no unit volume or a frame is invalid.
     """
     return Dataset(
         name=document.name,
@@ -129,10 +122,7 @@ def dataset_of(document: DatasetDocument, where: str) -> Dataset:
 def shape_of(record: RepresentativeRecord) -> Polyhedron:
     """The polyhedron of the record's half-spaces, or the compound of its parts.
 
-    Raises
-    ------
-    GeometryError
-        If they bound no volume.
+    Raises GeometryError if they bound no volume.
     """
     if record.compound is None:
         assert record.half_spaces is not None
@@ -146,10 +136,7 @@ def shape_of(record: RepresentativeRecord) -> Polyhedron:
 def polyhedron_of(record: HalfSpacesRecord) -> ConvexPolyhedron:
     """The polyhedron of half-spaces about their origin.
 
-    Raises
-    ------
-    GeometryError
-        If they bound no volume.
+    Raises GeometryError if they bound no volume.
     """
     return ConvexPolyhedron.from_half_spaces(HalfSpaces(np.array(record.normals), np.array(record.offsets)))
 

@@ -54,10 +54,7 @@ class SizeDistribution(BaseModel):
     def weighted(self, weighting: Weighting) -> "SizeDistribution":
         """The same particles, counted by number or by volume.
 
-        Raises
-        ------
-        InputError
-            If the conversion has no finite answer.
+        Raises InputError if the conversion has no finite answer.
         """
         if weighting == self.weighting:
             return self
@@ -271,10 +268,7 @@ AnySizes = Annotated[
 def normalised_shares(amounts: ArrayLike) -> tuple[float, ...]:
     """Amounts divided by their sum, which then is 1 within :data:`WEIGHT_TOLERANCE`.
 
-    Raises
-    ------
-    InputError
-        If an amount is negative or all are zero.
+    Raises InputError if an amount is negative or all are zero.
     """
     values = np.asarray(amounts, dtype=np.float64)
     if not np.isfinite(values).all() or (values < 0).any() or not values.sum() > 0:
@@ -327,12 +321,8 @@ MAX_CLASSES = 16
 class SizeClasses:
     """A few diameters that represent a distribution.
 
-    Parameters
-    ----------
-    diameters
-        Ascending, in micrometres, shape (k,).
-    number, mass
-        Share of each by number and by mass (at one density), shape (k,); each adds up to 1.
+    ``diameters``: ascending, in micrometres, shape (k,). ``number``, ``mass``: share of each by number and
+    by mass (at one density), shape (k,); each adds up to 1.
     """
 
     diameters: FloatArray
@@ -377,14 +367,9 @@ def _points(sizes: SizeDistribution) -> tuple[FloatArray, FloatArray]:
 class ShapeClass:
     """The class of particles that a representative stands for.
 
-    Parameters
-    ----------
-    weight
-        Any positive number; the weights of all classes are divided by their sum.
-    sizes
-        F_i.
-    n_members
-        Number of particles in the class.
+    - ``weight``: any positive number; the weights of all classes are divided by their sum.
+    - ``sizes``: f_i.
+    - ``n_members``: number of particles in the class.
     """
 
     weight: float
@@ -414,10 +399,7 @@ def parse_sizes(text: str) -> SizeRule:
     paper's Table 1); ``fitted:log-normal`` has the mean and deviation of their ln d; the others are the same
     for every class. Diameters in micrometres.
 
-    Raises
-    ------
-    InputError
-        If the text has another form, or describes no distribution.
+    Raises InputError if the text has another form, or describes no distribution.
     """
     body, _, counted = text.strip().partition("@")
     if counted not in ("", "number", "volume"):

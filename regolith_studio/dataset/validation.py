@@ -187,10 +187,7 @@ def _surface_problems(mesh: Mesh, shape: Polyhedron, origin: FloatArray) -> list
 def mesh_of_stl(content: bytes, where: str) -> Mesh:
     """The mesh of binary STL bytes, equal corners joined.
 
-    Raises
-    ------
-    DatasetError
-        If the bytes are no binary STL, or a coordinate is not finite.
+    Raises DatasetError if the bytes are no binary STL, or a coordinate is not finite.
     """
     try:
         corners = stl_triangles(content).reshape(-1, 3)

@@ -172,10 +172,7 @@ def measure_repose(
 def check_number(n: int, settings: EvaluationSettings) -> None:
     """Check before or after a run that there are enough particles.
 
-    Raises
-    ------
-    NotAPileError
-        If there are not.
+    Raises NotAPileError if there are not.
     """
     if n < settings.min_particles:
         raise NotAPileError(
@@ -399,12 +396,7 @@ def standard_interval(flanks: Sequence[float], confidence: float) -> float:
     Of flanks at equal steps around the circle, those within :data:`NEIGHBOURHOOD` are correlated and count as
     one value.
 
-    Parameters
-    ----------
-    flanks
-        One value a flank.
-    confidence
-        Such as 0.95.
+    ``flanks``: one value a flank. ``confidence``: such as 0.95.
     """
     independent = min(len(flanks), 360.0 / NEIGHBOURHOOD)
     quantile = float(student_t.ppf((1.0 + confidence) / 2, independent - 1))

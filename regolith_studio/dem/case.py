@@ -87,28 +87,19 @@ class ReposeCase:
 class PreparedCase:
     """A case with its particles. SI units.
 
-    Parameters
-    ----------
-    case
-        Parameters of the test.
-    shapes
-        Vertices of each unit-volume shape about its centroid, each of shape (k, 3); of a compound those of
-        all parts, one after the other.
-    class_index
-        Index of each particle's shape, shape (n,).
-    diameters
-        Equivalent diameters after coarse graining, in metres, shape (n,).
-    coarse_graining
-        Factor that was applied.
-    dataset_name, dataset_hash
-        Of the dataset; the hash is empty if it is not on disk.
-    n_facets
-        Facets of each shape, if known.
-    parts, inertias
-        Number of vertices of each convex part of each shape, and each shape's tensor of inertia at density 1,
-        shape (3, 3), of a compound that of its union. Both empty where all shapes are convex.
-    filling
-        The same particles at rest in the cylinder, from an earlier run; without it the cylinder is filled.
+    - ``case``: parameters of the test.
+    - ``shapes``: vertices of each unit-volume shape about its centroid, each of shape (k, 3); of a compound
+      those of all parts, one after the other.
+    - ``class_index``: index of each particle's shape, shape (n,).
+    - ``diameters``: equivalent diameters after coarse graining, in metres, shape (n,).
+    - ``coarse_graining``: factor that was applied.
+    - ``dataset_name``, ``dataset_hash``: of the dataset; the hash is empty if it is not on disk.
+    - ``n_facets``: facets of each shape, if known.
+    - ``parts``, ``inertias``: number of vertices of each convex part of each shape, and each shape's tensor
+      of inertia at density 1, shape (3, 3), of a compound that of its union. Both empty where all shapes are
+      convex.
+    - ``filling``: the same particles at rest in the cylinder, from an earlier run; without it the cylinder
+      is filled.
     """
 
     case: ReposeCase
@@ -216,10 +207,7 @@ def with_number(prepared: PreparedCase, n_particles: int) -> PreparedCase:
 def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> PreparedCase:
     """Draw the particles of a case.
 
-    Raises
-    ------
-    InputError
-        If the cylinder is too narrow or too low for them.
+    Raises InputError if the cylinder is too narrow or too low for them.
     """
     drawn = sample_dataset(dataset, case.n_particles, case.seed)
     fine = drawn.diameter * MICROMETRE
@@ -270,22 +258,16 @@ def _check_room(prepared: PreparedCase) -> None:
 class ScalingReport:
     """Dimensions and dimensionless numbers of a prepared case. SI units.
 
-    Parameters
-    ----------
-    mean_diameter, coarse_graining
-        Of the simulated particles, and the ratio of their size to the dataset's.
-    diameters_across
-        Diameter of the cylinder in mean diameters; should be 20 or more.
-    fill_height
-        Expected, from the mass and a solid fraction of 55 %.
-    bond_number
-        Pull-off force of Johnson, Kendall and Roberts over weight, for two mean particles: of the
-        particles of the dataset, of the simulated particles with the given surface energy, and as simulated.
-    full_stiffness_steps
-        Steps a simulated second of a code that resolves the contacts at the given Young's modulus
-        (a fifth of Rayleigh's time of the smallest particle).
-    sentences
-        Sentences for the user.
+    - ``mean_diameter``, ``coarse_graining``: of the simulated particles, and the ratio of their size to the
+      dataset's.
+    - ``diameters_across``: diameter of the cylinder in mean diameters; should be 20 or more.
+    - ``fill_height``: expected, from the mass and a solid fraction of 55 %.
+    - ``bond_number``: pull-off force of Johnson, Kendall and Roberts over weight, for two mean particles: of
+      the particles of the dataset, of the simulated particles with the given surface energy, and as
+      simulated.
+    - ``full_stiffness_steps``: steps a simulated second of a code that resolves the contacts at the given
+      Young's modulus (a fifth of Rayleigh's time of the smallest particle).
+    - ``sentences``: sentences for the user.
     """
 
     mean_diameter: float

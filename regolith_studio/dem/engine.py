@@ -49,28 +49,18 @@ class Availability:
 class RunChecks:
     """Checks after a run. Overlaps in mean diameters, energies in units of m g d per particle.
 
-    Parameters
-    ----------
-    particles_in, particles_out
-        Number at the beginning, and of those on or above the plate at the end.
-    mean_overlap, max_overlap
-        At rest.
-    deep_contacts
-        Share of the overlapping contacts at rest that are deeper than 0.02 mean diameters.
-    energy_gain
-        Maximum rise of the total energy while no moving wall touches the particles; it should only fall.
-    kinetic_energy
-        At the end.
-    at_rest
-        Whether the heap came to rest within the maximum time.
-    fill_height
-        Of the settled filling in metres.
-    solid_fraction
-        Of the settled filling.
-    plate_depth
-        Of the lowest corner below the plate, at rest, in mean diameters.
-    problems
-        A sentence for each check that failed.
+    - ``particles_in``, ``particles_out``: number at the beginning, and of those on or above the plate at the
+      end.
+    - ``mean_overlap``, ``max_overlap``: at rest.
+    - ``deep_contacts``: share of the overlapping contacts at rest that are deeper than 0.02 mean diameters.
+    - ``energy_gain``: maximum rise of the total energy while no moving wall touches the particles; it should
+      only fall.
+    - ``kinetic_energy``: at the end.
+    - ``at_rest``: whether the heap came to rest within the maximum time.
+    - ``fill_height``: of the settled filling in metres.
+    - ``solid_fraction``: of the settled filling.
+    - ``plate_depth``: of the lowest corner below the plate, at rest, in mean diameters.
+    - ``problems``: a sentence for each check that failed.
     """
 
     particles_in: int
@@ -91,16 +81,10 @@ class RunChecks:
 class SimulationResult:
     """Result of a finished run.
 
-    Parameters
-    ----------
-    particles
-        At rest.
-    checks
-        Of the run.
-    steps, simulated_time
-        Number of time steps, and seconds.
-    notes
-        Sentences on how the engine approximated the particles.
+    - ``particles``: at rest.
+    - ``checks``: of the run.
+    - ``steps``, ``simulated_time``: number of time steps, and seconds.
+    - ``notes``: sentences on how the engine approximated the particles.
     """
 
     particles: ParticleState
@@ -142,10 +126,7 @@ class ResumableEngine(Protocol):
     ) -> Generator[Snapshot, None, SimulationResult]:
         """The rest of the run: snapshots after that of the state, and the result.
 
-        Raises
-        ------
-        RegolithError
-            If the state is that of another case, or broken.
+        Raises RegolithError if the state is that of another case, or broken.
         """
         ...
 
@@ -173,18 +154,11 @@ def check_run(
 ) -> RunChecks:
     """Results of the checks, with a sentence for each check that failed.
 
-    Parameters
-    ----------
-    heights
-        Of the particles' centres above the plate in mean diameters, shape (n,).
-    overlaps
-        Depths at rest in mean diameters, shape (m,).
-    filling
-        Height in metres and solid fraction before the lift.
-    lowest
-        Height of each particle's lowest point above the plate in mean diameters, shape (n,).
-    problems
-        Sentences of the engine, which come first.
+    - ``heights``: of the particles' centres above the plate in mean diameters, shape (n,).
+    - ``overlaps``: depths at rest in mean diameters, shape (m,).
+    - ``filling``: height in metres and solid fraction before the lift.
+    - ``lowest``: height of each particle's lowest point above the plate in mean diameters, shape (n,).
+    - ``problems``: sentences of the engine, which come first.
     """
     kept, sentences = int(np.count_nonzero(heights > -1.0)), list(problems)
     if kept < len(heights):

@@ -44,10 +44,7 @@ STATE_INTERVAL = 60.0
 class EngineError(RegolithError):
     """An engine ended before its work was done; its snapshots are in the run's folder.
 
-    Attributes
-    ----------
-    document
-        Of the failed run, once it is written.
+    ``document``: of the failed run, once it is written.
     """
 
     document: dict[str, Any]
@@ -61,12 +58,8 @@ def run_engine(
     Every snapshot is saved in the folder before it is yielded, and from time to time the engine's state. A
     state of the same run that the folder holds already is where the engine goes on.
 
-    Raises
-    ------
-    MissingRequirement
-        If the engine is not installed.
-    EngineError
-        If it crashed, diverged, or could not write.
+    Raises MissingRequirement if the engine is not installed. Raises EngineError if it crashed, diverged, or
+    could not write.
     """
     engine = engine_named(key)
     if problem := engine.find().problem:

@@ -32,15 +32,10 @@ class HeapPacking:
     """Packing in the region of a heap that lies :data:`SURFACE_DISTANCE` below its surface and
     :data:`PLATE_DISTANCE` above the plate.
 
-    Parameters
-    ----------
-    solid_fraction
-        Share of the region's volume within a particle.
-    coordination_number
-        Mean number of particles that touch a particle whose centre is in the region, within
-        :data:`CONTACT_MARGIN`.
-    n_particles
-        With their centres in the region.
+    - ``solid_fraction``: share of the region's volume within a particle.
+    - ``coordination_number``: mean number of particles that touch a particle whose centre is in the region,
+      within :data:`CONTACT_MARGIN`.
+    - ``n_particles``: with their centres in the region.
     """
 
     solid_fraction: float
@@ -85,12 +80,7 @@ def measure_packing(
 def packing_document(density: float, filled: float | None, heap: HeapPacking | None) -> dict[str, Any]:
     """Solid fractions and bulk densities of filling and heap as JSON; lengths in mean diameters.
 
-    Parameters
-    ----------
-    density
-        Of the particles, in kg/m^3.
-    filled
-        Solid fraction of the filled cylinder.
+    ``density``: of the particles, in kg/m^3. ``filled``: solid fraction of the filled cylinder.
     """
     document: dict[str, Any] = {
         "filled_solid_fraction": filled,

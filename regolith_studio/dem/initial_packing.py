@@ -22,12 +22,8 @@ STEEP = 1e-9
 class Shadow:
     """What a particle covers of the height map: cells about its centre, and its underside and top there.
 
-    Parameters
-    ----------
-    cells
-        Indices relative to the cell of the centre, shape (m, 2).
-    lower, upper
-        Heights relative to the centre in metres, below and above all of the particle in a cell, shape (m,).
+    ``cells``: indices relative to the cell of the centre, shape (m, 2). ``lower``, ``upper``: heights
+    relative to the centre in metres, below and above all of the particle in a cell, shape (m,).
     """
 
     cells: IntArray

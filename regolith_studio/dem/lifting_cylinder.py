@@ -49,21 +49,14 @@ class Units:
 class LiftingSettings:
     """Course of the test; times in sqrt(d/g).
 
-    Parameters
-    ----------
-    max_fill_speed
-        Speed limit during filling, in sqrt(g d).
-    fill_friction
-        Share of the friction between particles that acts during filling. The smaller it is, the denser is the
-        filling, and the sooner it is at rest.
-    rest_energy
-        Mean kinetic energy of a particle, in units of its weight times d, below which a heap is at rest.
-    rest_time
-        Time for which it must stay below.
-    max_rest_time
-        Maximum time of waiting for rest.
-    snapshots
-        Number of snapshots of a run.
+    - ``max_fill_speed``: speed limit during filling, in sqrt(g d).
+    - ``fill_friction``: share of the friction between particles that acts during filling. The smaller it is,
+      the denser is the filling, and the sooner it is at rest.
+    - ``rest_energy``: mean kinetic energy of a particle, in units of its weight times d, below which a heap
+      is at rest.
+    - ``rest_time``: time for which it must stay below.
+    - ``max_rest_time``: maximum time of waiting for rest.
+    - ``snapshots``: number of snapshots of a run.
     """
 
     max_fill_speed: float = field(
@@ -128,10 +121,7 @@ class Solver(Protocol):
     def advance(self, step: float, count: int) -> None:
         """Take steps.
 
-        Raises
-        ------
-        RegolithError
-            If the solver diverges.
+        Raises RegolithError if the solver diverges.
         """
         ...
 
@@ -246,10 +236,7 @@ def expected_duration(prepared: PreparedCase) -> float:
 def simulate_lifting(run: LiftingRun) -> Generator[Snapshot, None, SimulationResult]:
     """Run the test from its beginning.
 
-    Raises
-    ------
-    RegolithError
-        If the solver diverges.
+    Raises RegolithError if the solver diverges.
     """
     yield from fill_cylinder(run)
     return (yield from lift_cylinder(run))
@@ -291,16 +278,11 @@ def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, N
 class SteppedEngine(ABC):
     """An engine of which only the solver is its own.
 
-    Parameters
-    ----------
-    seconds_per_step
-        Processor time of a particle and a step at 1,000 particles, by the kind of their shapes.
-    exponent
-        By which a step of a particle costs more, of the number of particles over 1,000.
-    further_part
-        Cost of a further part of a compound, in that of a convex particle.
-    halved_steps
-        Number of steps over that of steps that are never halved.
+    - ``seconds_per_step``: processor time of a particle and a step at 1,000 particles, by the kind of their
+      shapes.
+    - ``exponent``: by which a step of a particle costs more, of the number of particles over 1,000.
+    - ``further_part``: cost of a further part of a compound, in that of a convex particle.
+    - ``halved_steps``: number of steps over that of steps that are never halved.
     """
 
     seconds_per_step: Mapping[str, float]
@@ -312,10 +294,7 @@ class SteppedEngine(ABC):
     def solver(self, prepared: PreparedCase, settings: Any) -> Solver:
         """The solver of a case.
 
-        Raises
-        ------
-        InputError
-            If the case has what the solver does not represent.
+        Raises InputError if the case has what the solver does not represent.
         """
 
     def seconds(self, prepared: PreparedCase, settings: Any) -> float:

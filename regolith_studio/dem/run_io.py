@@ -70,10 +70,7 @@ def staged_run(folder: Path, overwrite: bool) -> Iterator[Path]:
     A killed process leaves the folder; where a state of the engine is in it, or in the stopped run that
     `folder` holds, the next run begins with its content.
 
-    Raises
-    ------
-    FileError
-        If `folder` holds something else, or may not be replaced, or cannot be written.
+    Raises FileError if `folder` holds something else, or may not be replaced, or cannot be written.
     """
     try:
         _check_replaceable(folder, overwrite)
@@ -178,11 +175,8 @@ def with_filling(prepared: PreparedCase, folder: Path) -> tuple[PreparedCase, li
     Gravity, lift, wall and plate may be others. Returns also a sentence if friction between particles, which
     the filling remembers, is another one.
 
-    Raises
-    ------
-    FileError
-        If the folder holds no run that has filled its cylinder, or one of other particles or another
-        cylinder.
+    Raises FileError if the folder holds no run that has filled its cylinder, or one of other particles or
+    another cylinder.
     """
     states = (read_particle_state(path) for path in reversed(snapshot_files(folder)))
     later = False
@@ -230,10 +224,7 @@ def save_result(folder: Path, document: dict[str, Any], final: ParticleState | N
 
     The duration is in ``times.json`` alone, so that equal runs have equal documents.
 
-    Raises
-    ------
-    FileError
-        If the disk is full or the folder is gone.
+    Raises FileError if the disk is full or the folder is gone.
     """
     try:
         if final is not None:
@@ -253,10 +244,7 @@ def save_result(folder: Path, document: dict[str, Any], final: ParticleState | N
 def read_final_state(path: Path) -> ParticleState:
     """Particles of a snapshot, or of a run's final state, which must be that of the document beside it.
 
-    Raises
-    ------
-    FileError
-        If the file is broken, or the final state of another run.
+    Raises FileError if the file is broken, or the final state of another run.
     """
     state = read_particle_state(path)
     if path.name == FINAL:
@@ -272,10 +260,7 @@ def snapshot_files(folder: Path) -> list[Path]:
 def read_shapes(folder: Path) -> tuple[tuple[FloatArray, ...], ...]:
     """Vertices of the convex parts of the shapes of a run.
 
-    Raises
-    ------
-    FileError
-        If the file is missing or broken, or those of another run.
+    Raises FileError if the file is missing or broken, or those of another run.
     """
     content = read_arrays(folder / SHAPES, "shapes of a run")
     _check_of_run(folder / SHAPES, "shapes_sha256", "are not the shapes")
@@ -288,13 +273,7 @@ def read_shapes(folder: Path) -> tuple[tuple[FloatArray, ...], ...]:
 
 
 def _check_of_run(path: Path, key: str, problem: str) -> None:
-    """Check that a file is the one whose SHA-256 the document beside it holds.
-
-    Raises
-    ------
-    FileError
-        If it is that of another run.
-    """
+    """Check that a file is the one whose SHA-256 the document beside it holds."""
     if (path.parent / DOCUMENT).is_file():
         expected = read_run(path.parent).document.get(key)
         if expected not in (None, hashlib.sha256(path.read_bytes()).hexdigest()):
@@ -304,10 +283,7 @@ def _check_of_run(path: Path, key: str, problem: str) -> None:
 def read_run(folder: Path) -> RunSummary:
     """The result of a run.
 
-    Raises
-    ------
-    FileError
-        If the folder holds none.
+    Raises FileError if the folder holds none.
     """
     path = folder / DOCUMENT
     try:
@@ -358,16 +334,10 @@ def run_document(
 ) -> dict[str, Any]:
     """The document. SI units, angles in degrees.
 
-    Parameters
-    ----------
-    state
-        ``finished``, ``stopped`` by the user, or ``failed``.
-    measured
-        The measurement, or why there is no angle.
-    packing
-        Of the heap.
-    problem
-        The message of a failed run.
+    - ``state``: ``finished``, ``stopped`` by the user, or ``failed``.
+    - ``measured``: the measurement, or why there is no angle.
+    - ``packing``: of the heap.
+    - ``problem``: the message of a failed run.
     """
     case = prepared.case
     return {

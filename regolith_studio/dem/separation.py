@@ -21,11 +21,8 @@ CHUNK_BYTES = 32_000_000
 def overlap_depths(prepared: PreparedCase, particles: ParticleState, rounding: float = 0.0) -> FloatArray:
     """Depth of every pair of particles that overlap, in metres, shape (m,).
 
-    Parameters
-    ----------
-    rounding
-        Radius of a ball that is added to every polyhedron, in equivalent diameters. The depth is then an
-        upper bound where corners meet corners or edges.
+    ``rounding``: radius of a ball that is added to every polyhedron, in equivalent diameters. The depth is
+    then an upper bound where corners meet corners or edges.
     """
     reach = enclosing_radii(prepared) + rounding * particles.diameters
     depths = -separations(prepared, particles, near_pairs(particles.points, reach), rounding=rounding)
@@ -61,12 +58,8 @@ def separations(
     maximum over these facets: exact for overlaps; a lower bound where corners face corners or edges, and
     where it is above `limit`. Of particles with several convex parts it is that of their nearest parts.
 
-    Parameters
-    ----------
-    pairs
-        Indices, shape (m, 2).
-    rounding
-        Radius of a ball that is added to every polyhedron, in equivalent diameters.
+    ``pairs``: indices, shape (m, 2). ``rounding``: radius of a ball that is added to every polyhedron, in
+    equivalent diameters.
     """
     radii = rounding * particles.diameters
     if prepared.case.shapes == "spheres":
@@ -110,15 +103,10 @@ def _pairs_of_parts(class_index: IntArray, counts: IntArray, pairs: IntArray) ->
 class _Forms:
     """Convex bodies in arrays of one size: shorter ones repeat their last entry, which changes no maximum.
 
-    Parameters
-    ----------
-    vertices
-        Shape (..., v, 3).
-    normals, offsets
-        Of the planes, outwards, shapes (..., f, 3) and (..., f).
-    starts, edges, left, right
-        One end of each edge, its unit direction, and the normals of the facets on both sides, shape
-        (..., e, 3) each.
+    - ``vertices``: shape (..., v, 3).
+    - ``normals``, ``offsets``: of the planes, outwards, shapes (..., f, 3) and (..., f).
+    - ``starts``, ``edges``, ``left``, ``right``: one end of each edge, its unit direction, and the normals
+      of the facets on both sides, shape (..., e, 3) each.
     """
 
     vertices: FloatArray

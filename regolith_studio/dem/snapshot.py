@@ -28,22 +28,13 @@ def progress_message(phase: str, seconds: float) -> Message:
 class ParticleState:
     """Particles at one moment, in SI units, z up, the plate at z = 0.
 
-    Parameters
-    ----------
-    points
-        Centres of mass in metres, shape (n, 3).
-    diameters
-        Equivalent diameters in metres, shape (n,).
-    orientations
-        Quaternions (w, x, y, z) from a shape of the dataset to the particle, shape (n, 4).
-    class_index
-        Index of each particle's shape, shape (n,).
-    time
-        Simulated seconds.
-    wall
-        Height of the cylinder's lower rim in metres; infinite after it was removed.
-    phase
-        Of the test: ``fill``, ``settle``, ``lift``, ``rest`` ...
+    - ``points``: centres of mass in metres, shape (n, 3).
+    - ``diameters``: equivalent diameters in metres, shape (n,).
+    - ``orientations``: quaternions (w, x, y, z) from a shape of the dataset to the particle, shape (n, 4).
+    - ``class_index``: index of each particle's shape, shape (n,).
+    - ``time``: simulated seconds.
+    - ``wall``: height of the cylinder's lower rim in metres; infinite after it was removed.
+    - ``phase``: of the test: ``fill``, ``settle``, ``lift``, ``rest`` ...
     """
 
     points: FloatArray
@@ -72,12 +63,7 @@ class ParticleState:
 class EngineState:
     """All that an engine needs to go on from one moment.
 
-    Parameters
-    ----------
-    records
-        Of the run, as JSON.
-    solver
-        The solver's own state.
+    ``records``: of the run, as JSON. ``solver``: the solver's own state.
     """
 
     records: Mapping[str, Any]
@@ -88,16 +74,11 @@ class EngineState:
 class Snapshot:
     """One moment of a running simulation.
 
-    Parameters
-    ----------
-    particles
-        Where they are.
-    share
-        Of the work that is done, 0 to 1.
-    message
-        One line on the progress.
-    state
-        Gives all that is needed to go on from here, for an engine that can; called at once or never.
+    - ``particles``: where they are.
+    - ``share``: of the work that is done, 0 to 1.
+    - ``message``: one line on the progress.
+    - ``state``: gives all that is needed to go on from here, for an engine that can; called at once or
+      never.
     """
 
     particles: ParticleState
@@ -109,12 +90,7 @@ class Snapshot:
 def engine_state_bytes(state: EngineState, key: str, number: int) -> bytes:
     """The content of a file of a state.
 
-    Parameters
-    ----------
-    key
-        Of the run that may go on from it.
-    number
-        Of the next snapshot.
+    ``key``: of the run that may go on from it. ``number``: of the next snapshot.
     """
     buffer = io.BytesIO()
     head = json.dumps({"key": key, "number": number, "records": dict(state.records)})
@@ -155,10 +131,7 @@ def particle_state_bytes(pile: ParticleState) -> bytes:
 def read_particle_state(path: Path) -> ParticleState:
     """The particles of a ``.npz`` file that this program wrote.
 
-    Raises
-    ------
-    FileError
-        If it is none.
+    Raises FileError if it is none.
     """
     content = read_arrays(path, "particles of a simulation")
     try:

@@ -36,17 +36,9 @@ BOX_METRICS: dict[str, Callable[[Mesh | ConvexPolyhedron], OrientedBox]] = {
 class ShapeCache:
     """Lazily computed facts about one particle, read by the functions of the catalogue.
 
-    Parameters
-    ----------
-    solid
-        Closed and outward-oriented.
-    box_metric
-        A key of `BOX_METRICS`.
+    ``solid``: closed and outward-oriented. ``box_metric``: a key of `BOX_METRICS`.
 
-    Raises
-    ------
-    GeometryError
-        If the solid has no faces, is flat or is inside out.
+    Raises GeometryError if the solid has no faces, is flat or is inside out.
     """
 
     def __init__(self, solid: Mesh | ConvexPolyhedron, box_metric: str = "exact") -> None:
@@ -105,24 +97,14 @@ _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 class Descriptor:
     """One row of the catalogue.
 
-    Parameters
-    ----------
-    key
-        Name in files and tables.
-    symbol
-        As in the paper or the literature.
-    label
-        For people, in sentence case.
-    dimension
-        Power of length in the unit; 0 where the descriptor is a pure number.
-    formula
-        Shown in the window, with whose definition it is.
-    compute
-        Value from the shared facts.
-    in_loss
-        Whether it is one of the paper's set D of Eq. 8 and 9.
-    costly
-        Whether it is worked out only when asked for by key.
+    - ``key``: name in files and tables.
+    - ``symbol``: as in the paper or the literature.
+    - ``label``: for people, in sentence case.
+    - ``dimension``: power of length in the unit; 0 where the descriptor is a pure number.
+    - ``formula``: shown in the window, with whose definition it is.
+    - ``compute``: value from the shared facts.
+    - ``in_loss``: whether it is one of the paper's set D of Eq. 8 and 9.
+    - ``costly``: whether it is worked out only when asked for by key.
     """
 
     key: str

@@ -17,17 +17,10 @@ def relative_errors(
 ) -> dict[str, float]:
     """|D(M) - D(P)| / D(M) of Eq. 8 for each descriptor key.
 
-    Parameters
-    ----------
-    reference
-        Descriptors of the measured shape M, none of them zero.
-    other
-        Descriptors of the shape P that stands for it.
+    ``reference``: descriptors of the measured shape M, none of them zero. ``other``: descriptors of the
+    shape P that stands for it.
 
-    Raises
-    ------
-    ValueError
-        If a reference value is zero.
+    Raises ValueError if a reference value is zero.
     """
     return {key: abs(_signed_error(reference[key], other[key], key)) for key in keys}
 
@@ -39,10 +32,7 @@ def rmsre(
 ) -> dict[str, float]:
     """Root of the mean squared relative error of Eq. 10 for each descriptor key, over pairs of shapes.
 
-    Raises
-    ------
-    ValueError
-        If there are no pairs, the lengths differ or a reference value is zero.
+    Raises ValueError if there are no pairs, the lengths differ or a reference value is zero.
     """
     if len(references) != len(others) or not references:
         raise ValueError(f"need pairs of descriptors, got {len(references)} and {len(others)}")
@@ -68,12 +58,8 @@ N_RESAMPLES = 1000
 def pooled_rmsre(errors: FloatArray, counts: ArrayLike) -> FloatArray:
     """RMSRE with each particle counted as often as each row of `counts` says; NaN where none has a value.
 
-    Parameters
-    ----------
-    errors
-        Shape (particles, rows, columns); NaN is left out.
-    counts
-        Shape (b, particles). The result has shape (b, rows, columns).
+    ``errors``: shape (particles, rows, columns); NaN is left out. ``counts``: shape (b, particles). The
+    result has shape (b, rows, columns).
     """
     weights = np.asarray(counts, dtype=np.float64)
     present = np.isfinite(errors)

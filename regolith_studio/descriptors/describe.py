@@ -13,10 +13,7 @@ from regolith_studio.geometry.particle import Particle
 class Descriptors(Mapping[str, float]):
     """Values of descriptors by key, in the order of `CATALOGUE`; never changes.
 
-    Raises
-    ------
-    ValueError
-        If a key is not in the catalogue.
+    Raises ValueError if a key is not in the catalogue.
     """
 
     __slots__ = ("_values",)

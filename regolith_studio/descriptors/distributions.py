@@ -20,17 +20,10 @@ WEIGHTINGS = ("number", "volume")
 class Distribution:
     """Values with weights.
 
-    Parameters
-    ----------
-    values
-        Rising, shape (n,).
-    weights
-        Share of the sample that each value stands for, sum 1, shape (n,).
+    ``values``: rising, shape (n,). ``weights``: share of the sample that each value stands for, sum 1, shape
+    (n,).
 
-    Raises
-    ------
-    ValueError
-        If there are no values, a weight is negative or all are zero.
+    Raises ValueError if there are no values, a weight is negative or all are zero.
     """
 
     values: FloatArray
@@ -65,10 +58,7 @@ class Distribution:
     def quantile(self, shares: ArrayLike) -> FloatArray:
         """Smallest value that at least each of `shares` (0 to 1) of the sample is not above.
 
-        Raises
-        ------
-        ValueError
-            If a share lies outside 0 to 1.
+        Raises ValueError if a share lies outside 0 to 1.
         """
         wanted = np.asarray(shares, dtype=np.float64)
         if ((wanted < 0.0) | (wanted > 1.0)).any():
@@ -90,17 +80,10 @@ def distribution(
 ) -> Distribution:
     """How the descriptor `key` is distributed over a sample of descriptors.
 
-    Parameters
-    ----------
-    weighting
-        ``number`` or ``volume``.
-    multiplicity
-        How many particles each of the sample stands for (Miles and Lantuejoul's weights); by default one.
+    ``weighting``: ``number`` or ``volume``. ``multiplicity``: how many particles each of the sample stands
+    for (Miles and Lantuejoul's weights); by default one.
 
-    Raises
-    ------
-    ValueError
-        If the sample is empty or the weighting is neither ``number`` nor ``volume``.
+    Raises ValueError if the sample is empty or the weighting is neither ``number`` nor ``volume``.
     """
     if weighting not in WEIGHTINGS:
         raise ValueError(f"weighting must be one of {WEIGHTINGS}, got {weighting!r}")

@@ -13,10 +13,7 @@ BoolArray = NDArray[np.bool_]
 def locked_floats(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> FloatArray:
     """`values` as float64 that nobody can change, copied unless they are that; ``None``: any length.
 
-    Raises
-    ------
-    ValueError
-        If the shape differs or a value is not finite.
+    Raises ValueError if the shape differs or a value is not finite.
     """
     array = _own(values, np.float64)
     _check_shape(array, shape, name)
@@ -31,10 +28,7 @@ def locked_floats(values: ArrayLike, shape: tuple[int | None, ...], name: str) -
 def locked_integers(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> IntArray:
     """`values` as int64 that nobody can change, copied unless they are that; ``None``: any length.
 
-    Raises
-    ------
-    ValueError
-        If the shape differs or a value is not a whole number.
+    Raises ValueError if the shape differs or a value is not a whole number.
     """
     given = np.asarray(values)
     array = _own(given, np.int64)

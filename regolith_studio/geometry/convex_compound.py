@@ -25,17 +25,9 @@ class ConvexCompound:
 
     Facets are numbered through: those of the first part first.
 
-    Parameters
-    ----------
-    parts
-        Each about its own place.
-    places
-        Origins of the parts' half-spaces, shape (k, 3).
+    ``parts``: each about its own place. ``places``: origins of the parts' half-spaces, shape (k, 3).
 
-    Raises
-    ------
-    ValueError
-        If there is no part, or not one place for each.
+    Raises ValueError if there is no part, or not one place for each.
     """
 
     parts: tuple[ConvexPolyhedron, ...]
@@ -100,13 +92,7 @@ class ConvexCompound:
 
     @cached_property
     def _union(self) -> tuple[Mesh, IntArray]:
-        """Surface of the union, and the facet of each of its triangles.
-
-        Raises
-        ------
-        GeometryError
-            If the union cannot be made (manifold3d).
-        """
+        """Surface of the union, and the facet of each of its triangles."""
         first = np.cumsum([0, *(part.n_facets for part in self.parts)])
         facets = [part.triangle_facets + start for part, start in zip(self.parts, first, strict=False)]
         return _united(self.part_meshes, facets)
@@ -115,10 +101,7 @@ class ConvexCompound:
     def mesh(self) -> Mesh:
         """Surface of the union: a closed mesh of what is exposed of the facets (manifold3d).
 
-        Raises
-        ------
-        GeometryError
-            If the union cannot be made.
+        Raises GeometryError if the union cannot be made.
         """
         return self._union[0]
 
@@ -170,23 +153,14 @@ class ConvexCompound:
 def union_of_meshes(meshes: Sequence[Mesh]) -> Mesh:
     """Surface of the union of closed meshes that overlap or touch (manifold3d).
 
-    Raises
-    ------
-    GeometryError
-        If the union cannot be made.
+    Raises GeometryError if the union cannot be made.
     """
     first = np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])
     return _united(meshes, [np.arange(low, high) for low, high in pairwise(first.tolist())])[0]
 
 
 def _united(meshes: Sequence[Mesh], facets: Sequence[IntArray]) -> tuple[Mesh, IntArray]:
-    """Surface of the union of meshes, and the facet of each of its triangles.
-
-    Raises
-    ------
-    GeometryError
-        If the union cannot be made (manifold3d).
-    """
+    """Surface of the union of meshes, and the facet of each of its triangles."""
     import manifold3d
 
     points = np.concatenate([mesh.vertices for mesh in meshes])

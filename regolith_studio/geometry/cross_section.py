@@ -13,15 +13,10 @@ from regolith_studio.geometry.mesh import Mesh
 class CrossSection:
     """The outline where a plane meets a closed surface; may have several loops, or none.
 
-    Parameters
-    ----------
-    normal
-        Unit normal of the plane <n, x> = `offset`, shape (3,).
-    points
-        Where edges pass the plane, shape (p, 3).
-    segments
-        Start and end of each piece of outline as indices of `points`, shape (k, 2); the inside lies on the
-        left, seen with the normal towards the eye.
+    - ``normal``: unit normal of the plane <n, x> = `offset`, shape (3,).
+    - ``points``: where edges pass the plane, shape (p, 3).
+    - ``segments``: start and end of each piece of outline as indices of `points`, shape (k, 2); the inside
+      lies on the left, seen with the normal towards the eye.
     """
 
     normal: FloatArray
@@ -76,10 +71,7 @@ def cross_section(mesh: Mesh, normal: ArrayLike, offset: float) -> CrossSection:
 
     A vertex on the plane counts as lying above it, so that every loop closes.
 
-    Raises
-    ------
-    ValueError
-        If the normal vanishes.
+    Raises ValueError if the normal vanishes.
     """
     unit = np.asarray(normal, dtype=np.float64)
     length = float(np.linalg.norm(unit))

@@ -16,10 +16,7 @@ def decimated(mesh: Mesh, n_faces: int) -> Mesh:
     The library keeps what it is given in variables of its own from loading to reading back: threads must wait
     for each other, or get pieces of each other's meshes.
 
-    Raises
-    ------
-    ValueError
-        If the mesh has fewer triangles.
+    Raises ValueError if the mesh has fewer triangles.
     """
     with _one_at_a_time:
         vertices, faces = fast_simplification.simplify(

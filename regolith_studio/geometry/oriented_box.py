@@ -33,19 +33,11 @@ FIRST_CELL = 0.02
 class OrientedBox:
     """A box in any orientation.
 
-    Parameters
-    ----------
-    centre
-        Shape (3,).
-    axes
-        Unit vectors along the edges, one a row, right-handed, shape (3, 3).
-    extents
-        Edge lengths along `axes`, longest first, shape (3,).
+    - ``centre``: shape (3,).
+    - ``axes``: unit vectors along the edges, one a row, right-handed, shape (3, 3).
+    - ``extents``: edge lengths along `axes`, longest first, shape (3,).
 
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, the axes are not orthonormal or the extents are not sorted.
+    Raises ValueError if a shape is wrong, the axes are not orthonormal or the extents are not sorted.
     """
 
     centre: FloatArray
@@ -106,10 +98,7 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     box holds the whole hull; its volume is above the minimum by at most the share by which it is above that
     of the thinned hull's.
 
-    Raises
-    ------
-    GeometryError
-        If the vertices lie in one plane.
+    Raises GeometryError if the vertices lie in one plane.
     """
     known = _of_meshes.get(solid) if isinstance(solid, Mesh) else None
     found = known or _searched(solid)
@@ -125,10 +114,7 @@ def heuristic_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     edges change by up to 23 % when the particle is turned, because it projects only one end of each
     silhouette edge.
 
-    Raises
-    ------
-    GeometryError
-        If the vertices lie in one plane.
+    Raises GeometryError if the vertices lie in one plane.
     """
     from trimesh.bounds import oriented_bounds
 

@@ -18,18 +18,12 @@ Solid = TypeVar("Solid")
 class Source:
     """Where a particle was read.
 
-    Parameters
-    ----------
-    path
-        File as the user named it, or ``sample:NAME`` for a shipped one.
-    sha256
-        Of the file's bytes, hexadecimal.
-    unit
-        Length unit that the file's numbers were taken in: ``um``, ``mm``, ``m``, ``voxel`` ...
-    repaired
-        Whether the mesh was repaired as it was read.
-    l_max
-        Degree above which the coefficients of a table were to be left out; ``None`` where all were taken.
+    - ``path``: file as the user named it, or ``sample:NAME`` for a shipped one.
+    - ``sha256``: of the file's bytes, hexadecimal.
+    - ``unit``: length unit that the file's numbers were taken in: ``um``, ``mm``, ``m``, ``voxel`` ...
+    - ``repaired``: whether the mesh was repaired as it was read.
+    - ``l_max``: degree above which the coefficients of a table were to be left out; ``None`` where all were
+      taken.
     """
 
     path: str

@@ -32,10 +32,7 @@ def split_non_manifold_edges(vertices: FloatArray, faces: IntArray) -> tuple[Flo
     of the edge, each pair gets its own vertex in the middle of it. The faces must run
     counter-clockwise seen from outside. A triangle that finds no partner is left with an open edge.
 
-    Raises
-    ------
-    GeometryError
-        If that would take too much work.
+    Raises GeometryError if that would take too much work.
     """
     vertices, faces = _split_vertices(vertices, faces)
     rounds = work = 0
@@ -169,22 +166,16 @@ MIN_VOLUME = 1e-9
 class Repair:
     """A repaired mesh and what was done to it.
 
-    Parameters
-    ----------
-    mesh
-        Closed, of one body, facing outwards; the given mesh itself if nothing was wrong.
-    health_before, health_after
-        What the inspection found.
-    actions
-        One plain sentence for each change; empty if there was none.
-    filled_area, filled_share
-        Area of the triangles that close holes, in the square of the mesh's unit; its share of the surface.
-    holes, filling_faces
-        How many holes were closed, and by how many triangles: the last ones of `mesh`.
-    dropped_bodies, kept_volume_share
-        How many bodies were left out, and the share of the volume of all that the kept one has.
-    given
-        The mesh before the repair; ``None`` if nothing was changed.
+    - ``mesh``: closed, of one body, facing outwards; the given mesh itself if nothing was wrong.
+    - ``health_before``, ``health_after``: what the inspection found.
+    - ``actions``: one plain sentence for each change; empty if there was none.
+    - ``filled_area``, ``filled_share``: area of the triangles that close holes, in the square of the mesh's
+      unit; its share of the surface.
+    - ``holes``, ``filling_faces``: how many holes were closed, and by how many triangles: the last ones of
+      `mesh`.
+    - ``dropped_bodies``, ``kept_volume_share``: how many bodies were left out, and the share of the volume
+      of all that the kept one has.
+    - ``given``: the mesh before the repair; ``None`` if nothing was changed.
     """
 
     mesh: Mesh
@@ -241,10 +232,7 @@ class _Draft:
 def repair(mesh: Mesh) -> Repair:
     """Make one sound body of a mesh: merge vertices, clean, keep the largest body, wind, close holes.
 
-    Raises
-    ------
-    GeometryError
-        With one sentence if nothing sound can be saved.
+    Raises GeometryError with one sentence if nothing sound can be saved.
     """
     before = inspect(mesh)
     if not before.faces:

@@ -13,10 +13,7 @@ GOLDEN_ANGLE = np.pi * (3.0 - 5.0**0.5)
 def fibonacci_directions(n: int) -> FloatArray:
     """`n` unit vectors on a Fibonacci spiral, shape (n, 3), each standing for the same solid angle 4 pi / n.
 
-    Raises
-    ------
-    ValueError
-        If `n` is not positive.
+    Raises ValueError if `n` is not positive.
     """
     if n < 1:
         raise ValueError(f"n must be at least 1, got {n}")
@@ -34,10 +31,7 @@ def icosphere(level: int) -> Mesh:
     The mesh has 10 * 4**level + 2 vertices and 20 * 4**level faces (level 4: 2,562 and 5,120), wound
     counter-clockwise seen from outside. Vertices of level k come first in level k + 1.
 
-    Raises
-    ------
-    ValueError
-        If `level` is negative or above 8 (1.3 million faces).
+    Raises ValueError if `level` is negative or above 8 (1.3 million faces).
     """
     if not 0 <= level <= 8:
         raise ValueError(f"level must be 0 to 8, got {level}")

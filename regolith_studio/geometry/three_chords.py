@@ -22,10 +22,7 @@ ROUNDING = 1e-12
 def length_width_thickness(hull: Mesh) -> tuple[float, float, float]:
     """The three chords of a convex solid, in its unit of length.
 
-    Raises
-    ------
-    GeometryError
-        If the thickness cannot be found: a solid that is almost flat.
+    Raises GeometryError if the thickness cannot be found: a solid that is almost flat.
     """
     low, high = hull.bounds
     size = float((high - low).max())

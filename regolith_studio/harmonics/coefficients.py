@@ -111,10 +111,7 @@ class ShCoefficients:
 def checked_degree(l_max: int, highest: int) -> int:
     """`l_max` itself, if it is a whole number from 0 to `highest`.
 
-    Raises
-    ------
-    InputError
-        If it is not.
+    Raises InputError if it is not.
     """
     if not isinstance(l_max, int | np.integer) or not 0 <= l_max <= highest:
         raise InputError(f"l_max must be a whole number from 0 to {highest}, got {l_max}.")
@@ -170,15 +167,10 @@ class PowerSpectrum:
 
     Not the "power" of pyshtools, which is (2 l + 1) / (4 pi) times as much in this convention.
 
-    Parameters
-    ----------
-    values
-        A_l for l = 0 .. l_max, shape (l_max + 1,), in squared units of the radius. Of a particle
-        A_0 is c_00^2; of a sample it is the variance of c_00 (section 2.3).
-    mean_radius
-        c_00 / sqrt(4 pi), of a sample its mean.
-    low, high
-        Ends of the confidence band of each value, shape (l_max + 1,), or ``None``.
+    - ``values``: a_l for l = 0 .. l_max, shape (l_max + 1,), in squared units of the radius. Of a particle
+      A_0 is c_00^2; of a sample it is the variance of c_00 (section 2.3).
+    - ``mean_radius``: c_00 / sqrt(4 pi), of a sample its mean.
+    - ``low``, ``high``: ends of the confidence band of each value, shape (l_max + 1,), or ``None``.
     """
 
     values: FloatArray
@@ -234,15 +226,9 @@ def sample_spectrum(particles: Sequence[ShCoefficients]) -> PowerSpectrum:
     percentiles over resampled particles, not over coefficients: those of one particle are not
     independent.
 
-    Parameters
-    ----------
-    particles
-        Coefficients of at least two particles; cut to the lowest degree among them.
+    ``particles``: coefficients of at least two particles; cut to the lowest degree among them.
 
-    Raises
-    ------
-    InputError
-        If there are fewer than two particles.
+    Raises InputError if there are fewer than two particles.
     """
     if len(particles) < 2:
         raise InputError(f"The spectrum of a sample needs at least two particles, got {len(particles)}.")

@@ -23,10 +23,7 @@ AUTOMATIC = ""
 class FitSurfaceSettings:
     """How fine the surface of a fit is.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     l_max: int = setting(
@@ -58,19 +55,11 @@ class FitSurfaceSettings:
 class FitOptions:
     """How the radius function is obtained from a mesh; picklable.
 
-    Parameters
-    ----------
-    star_point
-        Key of ``STAR_POINT_RULES``, or :data:`AUTOMATIC`.
-    rule
-        Key of ``radius_function.RULES``.
-    reference
-        Key of ``REFERENCES``.
+    - ``star_point``: key of ``STAR_POINT_RULES``, or :data:`AUTOMATIC`.
+    - ``rule``: key of ``radius_function.RULES``.
+    - ``reference``: key of ``REFERENCES``.
 
-    Raises
-    ------
-    InputError
-        If a key is unknown.
+    Raises InputError if a key is unknown.
     """
 
     star_point: str = setting(

@@ -53,10 +53,7 @@ def fits_arrays(names: Sequence[str], fits: Sequence[HarmonicFit]) -> dict[str, 
 def fits_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> dict[str, HarmonicFit]:
     """The fits by name, from a document and its arrays: inverse of the two functions above.
 
-    Raises
-    ------
-    InputError
-        If they do not belong together or a coefficient is not finite.
+    Raises InputError if they do not belong together or a coefficient is not finite.
     """
     entries, rows, points = document["particles"], arrays["coefficients"], arrays["star_points"]
     if not len(entries) == len(rows) == len(points):
@@ -112,16 +109,10 @@ def from_complex_rows(rows: ArrayLike) -> ShCoefficients:
     That is the convention of ``scipy.special.sph_harm_y`` and of the particle tables of NIST lineage.
     Rows may come in any order; those of m < 0 may be missing, coefficients that are not given are zero.
 
-    Parameters
-    ----------
-    rows
-        Shape (n, 4).
+    ``rows``: shape (n, 4).
 
-    Raises
-    ------
-    InputError
-        If a number is missing or not finite, l and m are no degree and order, a row comes twice, or the
-        rows of +m and -m contradict each other, so that the radius would not be real.
+    Raises InputError if a number is missing or not finite, l and m are no degree and order, a row comes
+    twice, or the rows of +m and -m contradict each other, so that the radius would not be real.
     """
     table, degree, order = _checked_rows(rows, 4)
     values = table[:, 2] + 1j * table[:, 3]
@@ -135,18 +126,11 @@ def from_complex_rows(rows: ArrayLike) -> ShCoefficients:
 def from_shtools_rows(rows: ArrayLike, norm: str = "4pi") -> ShCoefficients:
     """From rows ``l m C S`` (m >= 0) of SHTOOLS: real, without the Condon-Shortley phase.
 
-    Parameters
-    ----------
-    rows
-        Shape (n, 4).
-    norm
-        ``4pi`` (the default of SHTOOLS, where C_00 is the mean radius) or ``ortho``.
+    ``rows``: shape (n, 4). ``norm``: ``4pi`` (the default of SHTOOLS, where C_00 is the mean radius) or
+    ``ortho``.
 
-    Raises
-    ------
-    InputError
-        If a number is not finite, l and m are no degree and order, a row comes twice, or the
-        normalisation is unknown.
+    Raises InputError if a number is not finite, l and m are no degree and order, a row comes twice, or the
+    normalisation is unknown.
     """
     if norm not in ("4pi", "ortho"):
         raise InputError(f"The normalisation must be 4pi or ortho, got {norm!r}.")

@@ -28,12 +28,8 @@ from regolith_studio.geometry.ray_casting import radial_hits
 class Ellipsoid:
     """An ellipsoid about the star point.
 
-    Parameters
-    ----------
-    axes
-        Unit axes as rows, shape (3, 3).
-    semi_axes
-        Half lengths along them, shape (3,), in the unit of the particle.
+    ``axes``: unit axes as rows, shape (3, 3). ``semi_axes``: half lengths along them, shape (3,), in the
+    unit of the particle.
     """
 
     axes: FloatArray
@@ -88,18 +84,12 @@ RECAST_ANGLE = 1e-7
 class RadiusFunction:
     """Distances from the star point to the surface along given directions.
 
-    Parameters
-    ----------
-    star_point
-        Shape (3,).
-    directions
-        Unit vectors, shape (n, 3).
-    first, outermost, volume
-        Radius by each rule, shape (n,), in the unit of the mesh; equal where a ray crosses once.
-    n_crossings
-        Crossings of each ray, shape (n,).
-    rule
-        Key of :data:`RULES` that :attr:`radii` follows.
+    - ``star_point``: shape (3,).
+    - ``directions``: unit vectors, shape (n, 3).
+    - ``first``, ``outermost``, ``volume``: radius by each rule, shape (n,), in the unit of the mesh; equal
+      where a ray crosses once.
+    - ``n_crossings``: crossings of each ray, shape (n,).
+    - ``rule``: key of :data:`RULES` that :attr:`radii` follows.
     """
 
     star_point: FloatArray
@@ -141,12 +131,8 @@ def sample_radius(
 ) -> RadiusFunction:
     """Cast rays from `star_point` along `directions` (n, 3) at a closed mesh.
 
-    Raises
-    ------
-    GeometryError
-        If the star point lies outside, or the mesh is open.
-    InputError
-        If the rule is unknown.
+    Raises GeometryError if the star point lies outside, or the mesh is open. Raises InputError if the rule
+    is unknown.
     """
     centre = locked_floats(star_point, (3,), "star_point")
     rays = locked_floats(directions, (None, 3), "directions")
@@ -186,13 +172,7 @@ def _sum_crossings(ray: IntArray, distance: FloatArray, sign: IntArray, table: F
 
 
 def _winding_number(table: FloatArray, centre: FloatArray) -> int:
-    """How often the surface winds round the star point, by the majority of rays; 1 inside a solid.
-
-    Raises
-    ------
-    GeometryError
-        If it does not.
-    """
+    """How often the surface winds round the star point, by the majority of rays; 1 inside a solid."""
     sums, counts = np.unique(table[:, 4], return_counts=True)
     winding = int(sums[counts.argmax()])
     if winding < 1:
@@ -229,10 +209,7 @@ def is_closed(mesh: Mesh) -> bool:
 def require_solid(mesh: Mesh) -> Mesh:
     """The mesh itself, if it is closed and encloses a positive volume.
 
-    Raises
-    ------
-    GeometryError
-        If it is open, flat or inside out.
+    Raises GeometryError if it is open, flat or inside out.
     """
     if len(mesh.faces) < 4:
         raise GeometryError(f"A particle needs at least four triangles, this mesh has {len(mesh.faces)}.")

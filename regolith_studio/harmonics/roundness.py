@@ -31,10 +31,7 @@ def wadell_roundness(fit: HarmonicFit) -> float:
     the series on flat sides and no corners. Corners are those of the expansion: a fit of a higher degree has
     more and sharper ones, so that only values of one l_max can be compared.
 
-    Raises
-    ------
-    GeometryError
-        If the expansion has a negative radius.
+    Raises GeometryError if the expansion has a negative radius.
     """
     axes = best_fit_ellipsoid(reconstruct(fit)).axes
     angles = np.linspace(0.0, 2 * np.pi, N_OUTLINE, endpoint=False)
@@ -54,13 +51,8 @@ def outline_roundness(points: FloatArray, min_turn: float = 0.0) -> float:
     is no corner, towards 0 for sharp ones. H. Wadell, Volume, shape, and roundness of rock particles,
     J. Geol. 40 (1932) 443-451.
 
-    Parameters
-    ----------
-    points
-        Along the curve, counter-clockwise, closed by the first one, shape (n, 2); close enough to resolve
-        its corners.
-    min_turn
-        Angle in radians that a corner turns by at least.
+    ``points``: along the curve, counter-clockwise, closed by the first one, shape (n, 2); close enough to
+    resolve its corners. ``min_turn``: angle in radians that a corner turns by at least.
     """
     curvature = _curvature(points)
     bend = curvature * inscribed_radius(points[:: max(1, len(points) // N_INSCRIBED)])

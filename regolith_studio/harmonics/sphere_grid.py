@@ -84,12 +84,8 @@ def harmonics(directions: FloatArray, l_max: int) -> FloatArray:
 def ring_nodes(cosines: FloatArray, weights: FloatArray, n_longitudes: int) -> tuple[FloatArray, FloatArray]:
     """Unit vectors (n, 3) and solid angles (n,) of evenly spaced points on rings of latitude, ring by ring.
 
-    Parameters
-    ----------
-    cosines, weights
-        Of the polar angle of each ring, and its quadrature weight; the weights sum to 2.
-    n_longitudes
-        On each ring; the first is 0.
+    ``cosines``, ``weights``: of the polar angle of each ring, and its quadrature weight; the weights sum to
+    2. ``n_longitudes``: on each ring; the first is 0.
     """
     longitudes = np.tile(2 * np.pi * np.arange(n_longitudes) / n_longitudes, len(cosines))
     z = np.repeat(cosines, n_longitudes)
@@ -101,17 +97,10 @@ def ring_nodes(cosines: FloatArray, weights: FloatArray, n_longitudes: int) -> t
 def analyse_rings(samples: FloatArray, cosines: FloatArray, weights: FloatArray, l_max: int) -> FloatArray:
     """Coefficients up to `l_max` of a function on rings of latitude, by quadrature.
 
-    Parameters
-    ----------
-    samples
-        At longitudes 2 pi j / n of each ring, shape (rings, n) with n > 2 `l_max`.
-    cosines, weights
-        Of the polar angle of each ring, and its quadrature weight; the weights sum to 2.
+    ``samples``: at longitudes 2 pi j / n of each ring, shape (rings, n) with n > 2 `l_max`. ``cosines``,
+    ``weights``: of the polar angle of each ring, and its quadrature weight; the weights sum to 2.
 
-    Returns
-    -------
-    ndarray
-        Shape ((l_max + 1)^2,), index k = l^2 + l + m.
+    Returns shape ((l_max + 1)^2,), index k = l^2 + l + m.
     """
     n = samples.shape[1]
     waves = np.fft.rfft(samples, axis=1)[:, : l_max + 1] * (2 * np.pi / n * weights)[:, None]
@@ -123,19 +112,11 @@ def analyse_rings(samples: FloatArray, cosines: FloatArray, weights: FloatArray,
 def synthesise_rings(values: FloatArray, cosines: FloatArray, n_longitudes: int) -> FloatArray:
     """Values on rings of the function with given coefficients: inverse of :func:`analyse_rings`.
 
-    Parameters
-    ----------
-    values
-        Coefficients, shape ((l_max + 1)^2,).
-    cosines
-        Of the polar angle of each ring.
-    n_longitudes
-        Greater than 2 l_max.
+    - ``values``: coefficients, shape ((l_max + 1)^2,).
+    - ``cosines``: of the polar angle of each ring.
+    - ``n_longitudes``: greater than 2 l_max.
 
-    Returns
-    -------
-    ndarray
-        Shape (rings, n_longitudes).
+    Returns shape (rings, n_longitudes).
     """
     l_max = isqrt(len(values)) - 1
     even, odd = np.zeros((len(cosines), l_max + 1)), np.zeros((len(cosines), l_max + 1))
@@ -189,14 +170,10 @@ VALUES_AT_ONCE = 1_000_000
 class RingBasis:
     """Harmonics on rings of latitude with evenly spaced longitudes.
 
-    Parameters
-    ----------
-    legendre
-        For each order m the Legendre functions of degrees m to l_max on the rings, shape
-        (l_max + 1 - m, rings).
-    waves
-        Cosines of orders 0 to l_max, and sines of orders 1 to l_max, along a ring, shape
-        (2 l_max + 1, longitudes).
+    - ``legendre``: for each order m the Legendre functions of degrees m to l_max on the rings, shape (l_max
+      + 1 - m, rings).
+    - ``waves``: cosines of orders 0 to l_max, and sines of orders 1 to l_max, along a ring, shape (2 l_max +
+      1, longitudes).
     """
 
     legendre: tuple[FloatArray, ...]
@@ -248,15 +225,10 @@ def _zonal(m: int, l_max: int) -> IntArray:
 class SphereGrid:
     """A quadrature rule with the harmonics at its nodes.
 
-    Parameters
-    ----------
-    directions
-        Unit vectors, shape (k, 3).
-    weights
-        Solid angles, shape (k,), with sum 4 pi; products of functions are integrated exactly as long as
-        their degrees add up to at most twice the degree of the grid.
-    rings
-        Harmonics at the nodes.
+    - ``directions``: unit vectors, shape (k, 3).
+    - ``weights``: solid angles, shape (k,), with sum 4 pi; products of functions are integrated exactly as
+      long as their degrees add up to at most twice the degree of the grid.
+    - ``rings``: harmonics at the nodes.
     """
 
     directions: FloatArray

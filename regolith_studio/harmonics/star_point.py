@@ -29,10 +29,7 @@ def centre_of_mass(mesh: Mesh) -> FloatArray:
 def kernel_centre(mesh: Mesh) -> FloatArray:
     """The point deepest in the kernel: the largest distance to every face's plane (HiGHS), shape (3,).
 
-    Raises
-    ------
-    GeometryError
-        If the kernel is empty: no point sees the whole surface.
+    Raises GeometryError if the kernel is empty: no point sees the whole surface.
     """
     size = mesh.volume ** (1 / 3)
     keep = mesh.face_areas > 1e-14 * mesh.surface_area  # slivers have a normal of rounding errors
@@ -60,10 +57,7 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
 
     Downhill simplex search within a quarter of the equivalent radius.
 
-    Raises
-    ------
-    GeometryError
-        If no point inside is found.
+    Raises GeometryError if no point inside is found.
     """
     start = centre_of_mass(mesh)
     if not np.isfinite(hidden_volume(mesh, start)):
@@ -91,10 +85,7 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
 def inner_point(mesh: Mesh) -> FloatArray:
     """A point well inside, shape (3,): the middle of the longest segment of a few lines inside the mesh.
 
-    Raises
-    ------
-    GeometryError
-        If no line enters the particle.
+    Raises GeometryError if no line enters the particle.
     """
     size = float(np.ptp(mesh.bounds, axis=0).max())
     best, length = None, 0.0
@@ -143,10 +134,7 @@ def faces_away(mesh: Mesh, star_point: FloatArray) -> BoolArray:
 def hidden_faces(mesh: Mesh, star_point: FloatArray, faces: IntArray | None = None) -> BoolArray:
     """Whether the middle of each face is hidden from the star point by another part of the surface.
 
-    Parameters
-    ----------
-    faces
-        Indices of the faces to test, shape (k,); all if ``None``. The result has their length.
+    ``faces``: indices of the faces to test, shape (k,); all if ``None``. The result has their length.
     """
     chosen = np.arange(len(mesh.faces)) if faces is None else faces
     spokes = mesh.triangles[chosen].mean(axis=1) - star_point
@@ -181,16 +169,11 @@ def hidden_surface_share(mesh: Mesh, star_point: FloatArray) -> float:
 class StarPointVisibility:
     """Share of a particle that is visible from its star point.
 
-    Parameters
-    ----------
-    star_point
-        In the frame of the particle.
-    rule
-        Key of ``STAR_POINT_RULES`` by which the point was found.
-    hidden_surface_share
-        Share of the surface that is not visible from the star point; exactly 0 for star-shaped particles.
-    unrepresentable_volume_share
-        Share of the volume behind the first crossing of a ray.
+    - ``star_point``: in the frame of the particle.
+    - ``rule``: key of ``STAR_POINT_RULES`` by which the point was found.
+    - ``hidden_surface_share``: share of the surface that is not visible from the star point; exactly 0 for
+      star-shaped particles.
+    - ``unrepresentable_volume_share``: share of the volume behind the first crossing of a ray.
     """
 
     star_point: tuple[float, float, float]
@@ -214,10 +197,7 @@ def star_point_visibility(mesh: Mesh) -> StarPointVisibility:
     As for fits this is the centre of mass, and where that lies outside the particle, the nearby point that
     hides the least volume.
 
-    Raises
-    ------
-    GeometryError
-        If the mesh is open or inside out, or no star point is found inside.
+    Raises GeometryError if the mesh is open or inside out, or no star point is found inside.
     """
     solid = require_solid(mesh)
     for name in ("centre_of_mass", "least_hidden_volume"):

@@ -87,10 +87,7 @@ def radii(expansion: Expansion, directions: ArrayLike, l_max: int | None = None)
 def as_fit(expansion: Expansion, l_max: int | None = None) -> HarmonicFit:
     """The expansion cut at `l_max`; bare coefficients get the origin as star point.
 
-    Raises
-    ------
-    InputError
-        If `l_max` is out of range.
+    Raises InputError if `l_max` is out of range.
     """
     if isinstance(expansion, ShCoefficients):
         return HarmonicFit(expansion if l_max is None else expansion.truncated(l_max), np.zeros(3))

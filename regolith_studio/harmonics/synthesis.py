@@ -27,16 +27,11 @@ KEPT = 2
 class IcosphereEdges:
     """The edges of an icosphere with n vertices.
 
-    Parameters
-    ----------
-    ends
-        Vertex indices, shape (e, 2).
-    middles
-        Directions of the edges' middles, shape (e, 3).
-    spans
-        Length of the sum of the two end directions, shape (e,).
-    weights
-        Weight of each edge in the mean over the triangles round each vertex, sparse, shape (n, e).
+    - ``ends``: vertex indices, shape (e, 2).
+    - ``middles``: directions of the edges' middles, shape (e, 3).
+    - ``spans``: length of the sum of the two end directions, shape (e,).
+    - ``weights``: weight of each edge in the mean over the triangles round each vertex, sparse, shape (n,
+      e).
     """
 
     ends: IntArray
@@ -50,10 +45,8 @@ class IcosphereEdges:
         Over a triangle the shortfall is nearly quadratic and vanishes at the corners, so that its mean is
         that of its values in the middles of the three edges.
 
-        Parameters
-        ----------
-        radius, between
-            Radius of the surface at the vertices (n,) and in the middles of the edges (e,).
+        ``radius``, ``between``: radius of the surface at the vertices (n,) and in the middles of the edges
+        (e,).
         """
         start, end = radius[self.ends[:, 0]], radius[self.ends[:, 1]]
         chord = start * end / (start + end) * self.spans

@@ -73,10 +73,7 @@ def _package(name: str, folder: Path) -> ModuleType:
 def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients:
     """Coefficients of the body turned by a rotation matrix (3, 3): r'(rotation @ u) = r(u).
 
-    Raises
-    ------
-    ValueError
-        If the matrix is not a proper rotation.
+    Raises ValueError if the matrix is not a proper rotation.
     """
     matrix = np.asarray(rotation, dtype=np.float64)
     if matrix.shape != (3, 3) or not np.allclose(matrix @ matrix.T, np.eye(3), atol=1e-9):
@@ -122,14 +119,9 @@ TILT = Rotation.from_euler("ZYZ", [np.sqrt(2.0), np.sqrt(3.0) - 1.0, np.sqrt(5.0
 class RayGrid:
     """Directions on which a function of degree `degree` is sampled.
 
-    Parameters
-    ----------
-    degree
-        Highest degree that the grid separates.
-    directions
-        Unit vectors, latitude by latitude, shape (n, 3).
-    solid_angles
-        Quadrature weight of each direction, shape (n,); their sum is 4 pi.
+    - ``degree``: highest degree that the grid separates.
+    - ``directions``: unit vectors, latitude by latitude, shape (n, 3).
+    - ``solid_angles``: quadrature weight of each direction, shape (n,); their sum is 4 pi.
     """
 
     degree: int
@@ -159,10 +151,7 @@ def _rings(degree: int) -> tuple[FloatArray, FloatArray, int]:
 def ray_grid(degree: int = SAMPLING_DEGREE) -> RayGrid:
     """The tilted Gauss-Legendre grid of one degree, cached.
 
-    Raises
-    ------
-    InputError
-        If the degree is out of range.
+    Raises InputError if the degree is out of range.
     """
     if not 1 <= degree <= MAX_SAMPLING_DEGREE:
         raise InputError(f"The sampling degree must be 1 to {MAX_SAMPLING_DEGREE}, got {degree}.")
@@ -178,10 +167,7 @@ def _ray_grid(degree: int) -> RayGrid:
 def analyse(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
     """Coefficients up to `l_max` of a function given on a grid, shape (n,), by quadrature.
 
-    Raises
-    ------
-    InputError
-        If `l_max` is above the grid's degree, or a sample is not finite.
+    Raises InputError if `l_max` is above the grid's degree, or a sample is not finite.
     """
     return rotated(_untilted(grid, samples, l_max), TILT)
 

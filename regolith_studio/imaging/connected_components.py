@@ -47,14 +47,10 @@ def pores_filled(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 class SlabComponents:
     """The components of one slab, numbered from 1.
 
-    Parameters
-    ----------
-    sizes
-        Voxels of each, shape (n,).
-    low, high
-        First voxel of each box along x, y and z of the volume and the one after its last, shape (n, 3).
-    has_core
-        Whether it holds a voxel of the core mask, shape (n,).
+    - ``sizes``: voxels of each, shape (n,).
+    - ``low``, ``high``: first voxel of each box along x, y and z of the volume and the one after its last,
+      shape (n, 3).
+    - ``has_core``: whether it holds a voxel of the core mask, shape (n,).
     """
 
     sizes: IntArray
@@ -67,12 +63,8 @@ class SlabComponents:
 class ConnectedComponents:
     """The components of a volume.
 
-    Parameters
-    ----------
-    sizes
-        Voxels of each body, shape (n,).
-    low, high
-        First voxel of each box along x, y and z and the one after its last, shape (n, 3).
+    ``sizes``: voxels of each body, shape (n,). ``low``, ``high``: first voxel of each box along x, y and z
+    and the one after its last, shape (n, 3).
     """
 
     sizes: IntArray
@@ -89,14 +81,9 @@ def components_of_slab(
 ) -> tuple[NDArray[np.int32], SlabComponents]:
     """Number of the component of each voxel in a slab, 0 outside, and what is known of them.
 
-    Parameters
-    ----------
-    mask
-        Shape (nx, ny, thickness).
-    first
-        z of its first slice in the volume.
-    core
-        Only bodies with a voxel of this mask, of the same shape, are bodies; by default all are.
+    - ``mask``: shape (nx, ny, thickness).
+    - ``first``: z of its first slice in the volume.
+    - ``core``: only bodies with a voxel of this mask, of the same shape, are bodies; by default all are.
     """
     numbers, count = connected_components(mask)
     if count == 0:
@@ -127,10 +114,8 @@ class ComponentJoiner:
     def add(self, slab: SlabComponents, below: NDArray[Any] | None, face: NDArray[Any]) -> int:
         """Take the next slab; returns what is added to its numbers to make them differ from all before.
 
-        Parameters
-        ----------
-        below, face
-            Numbers in the last slice of the slab before, if there is one, and in the slab's first slice.
+        ``below``, ``face``: numbers in the last slice of the slab before, if there is one, and in the slab's
+        first slice.
         """
         if below is not None:
             before = self._count - len(self._slabs[-1].sizes)

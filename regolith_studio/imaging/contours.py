@@ -24,17 +24,10 @@ MAX_DEPTH = 4
 def contour(values: NDArray[Any], level: float, spacing: Sequence[float]) -> Mesh:
     """Surface where `values`, higher inside, cross `level` (marching cubes, Lewiner's table).
 
-    Parameters
-    ----------
-    values
-        Samples on a grid, shape (nx, ny, nz), below `level` all over the border of the grid.
-    spacing
-        Distance of samples along each axis; the first sample lies at the origin.
+    ``values``: samples on a grid, shape (nx, ny, nz), below `level` all over the border of the grid.
+    ``spacing``: distance of samples along each axis; the first sample lies at the origin.
 
-    Raises
-    ------
-    ValueError
-        If no value lies above `level` or none below, or the surface encloses no volume.
+    Raises ValueError if no value lies above `level` or none below, or the surface encloses no volume.
     """
     vertices, faces, _, _ = _marching_cubes(
         values, level, spacing=tuple(float(step) for step in spacing), gradient_direction="ascent"
@@ -104,14 +97,9 @@ class LowPass:
     stretching along the axes: anisotropic voxels need no special care. VTK's filter of this name shifts the
     pass band, so that it lets more through.
 
-    Parameters
-    ----------
-    faces
-        Triangles, shape (m, 3).
-    n_vertices
-        Corners of the mesh.
-    iterations
-        Degree of the polynomial; 0 leaves the mesh as it is.
+    - ``faces``: triangles, shape (m, 3).
+    - ``n_vertices``: corners of the mesh.
+    - ``iterations``: degree of the polynomial; 0 leaves the mesh as it is.
     """
 
     def __init__(self, faces: IntArray, n_vertices: int, iterations: int) -> None:
@@ -124,12 +112,8 @@ class LowPass:
     def __call__(self, vertices: FloatArray, pass_band: float) -> FloatArray:
         """Smoothed corners, shape (n, 3).
 
-        Parameters
-        ----------
-        vertices
-            Shape (n, 3).
-        pass_band
-            Share of the mesh's frequencies that stay, 0 to 2; the smaller, the smoother.
+        ``vertices``: shape (n, 3). ``pass_band``: share of the mesh's frequencies that stay, 0 to 2; the
+        smaller, the smoother.
         """
         if self._iterations == 0:
             return vertices
@@ -146,10 +130,7 @@ def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.13) -> 
 def with_volume(mesh: Mesh, volume: float) -> Mesh:
     """The mesh scaled about its centroid to enclose `volume`.
 
-    Raises
-    ------
-    GeometryError
-        If the mesh encloses no volume.
+    Raises GeometryError if the mesh encloses no volume.
     """
     if not mesh.volume > 0.0:
         raise GeometryError(f"The surface encloses no volume (its signed volume is {mesh.volume:.3g}).")

@@ -57,18 +57,11 @@ _BATCH_SHARE = 8
 class ExtractedParticle:
     """One label that became a particle.
 
-    Parameters
-    ----------
-    particle
-        In micrometres, at its place in the volume.
-    label, n_voxels
-        Its number in the volume, and its size there.
-    weight
-        Miles-Lantuejoul weight (:func:`border_weight`), 1 where border grains are kept.
-    surface
-        What its surface was taken from: of the mask, too, where the grey values do not tell it.
-    scan
-        What its surface was made from, where that is of the grey values.
+    - ``particle``: in micrometres, at its place in the volume.
+    - ``label``, ``n_voxels``: its number in the volume, and its size there.
+    - ``weight``: Miles-Lantuejoul weight (:func:`border_weight`), 1 where border grains are kept.
+    - ``surface``: what its surface was taken from: of the mask, too, where the grey values do not tell it.
+    - ``scan``: what its surface was made from, where that is of the grey values.
     """
 
     particle: Particle
@@ -93,16 +86,10 @@ class ExtractionProgress:
 class Extraction:
     """What came out of a volume, and what did not.
 
-    Parameters
-    ----------
-    found
-        In the order of their labels; empty where they were not collected.
-    border
-        Labels left out because they touch the border, or are pieces of grains that do.
-    small
-        Labels left out because they are too small.
-    n_found
-        Labels that became particles.
+    - ``found``: in the order of their labels; empty where they were not collected.
+    - ``border``: labels left out because they touch the border, or are pieces of grains that do.
+    - ``small``: labels left out because they are too small.
+    - ``n_found``: labels that became particles.
     """
 
     found: tuple[ExtractedParticle, ...]
@@ -165,25 +152,15 @@ def extraction_steps(
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
-    Parameters
-    ----------
-    volume
-        Labels, in memory or mapped from a file.
-    group, source
-        Passed on to each particle.
-    make
-        Applied to each particle where it is made; what it returns takes the particle's place in the steps.
-        By default the particles themselves are in the steps, and are kept for the result.
-    grey
-        The grey values that the labels were found in; surfaces are of the masks without them.
-    run
-        Applies what is done to slabs and to single labels.
+    - ``volume``: labels, in memory or mapped from a file.
+    - ``group``, ``source``: passed on to each particle.
+    - ``make``: applied to each particle where it is made; what it returns takes the particle's place in the
+      steps. By default the particles themselves are in the steps, and are kept for the result.
+    - ``grey``: the grey values that the labels were found in; surfaces are of the masks without them.
+    - ``run``: applies what is done to slabs and to single labels.
 
-    Raises
-    ------
-    InputError
-        If the volume holds grey values, no label, or labels beyond
-        :data:`~regolith_studio.imaging.label_table.MAX_LABEL`.
+    Raises InputError if the volume holds grey values, no label, or labels beyond
+    :data:`~regolith_studio.imaging.label_table.MAX_LABEL`.
     """
     settings = settings or ExtractionSettings()
     chosen = select_labels(volume, settings, grey is not None, run)
@@ -206,16 +183,10 @@ def extraction_steps(
 class LabelSelection:
     """The labels of a volume, and which of them become particles.
 
-    Parameters
-    ----------
-    boxes, sizes
-        Box and number of voxels of the largest piece of each label.
-    strays
-        Of the labels of several pieces, the number of these, and of voxels outside of the largest.
-    border, small
-        Labels that are left out, as in an :class:`Extraction`.
-    circle
-        What the scanner saw of the slices, where that is not all.
+    - ``boxes``, ``sizes``: box and number of voxels of the largest piece of each label.
+    - ``strays``: of the labels of several pieces, the number of these, and of voxels outside of the largest.
+    - ``border``, ``small``: labels that are left out, as in an :class:`Extraction`.
+    - ``circle``: what the scanner saw of the slices, where that is not all.
     """
 
     boxes: Mapping[int, Box]
@@ -245,17 +216,10 @@ def select_labels(
 ) -> LabelSelection:
     """Which labels become particles.
 
-    Parameters
-    ----------
-    segmented
-        Whether the labels were found in grey values: then pieces of grains at the border are left out too.
-    run
-        Applies what is done to slabs.
+    ``segmented``: whether the labels were found in grey values: then pieces of grains at the border are left
+    out too. ``run``: applies what is done to slabs.
 
-    Raises
-    ------
-    InputError
-        As :func:`extraction_steps`.
+    Raises InputError as :func:`extraction_steps`.
     """
     table = label_table(volume, run)
     boxes, sizes = table.boxes(), table.sizes()
@@ -302,14 +266,9 @@ def pieces_of_cut_grains(
     They touch a label at the border, or another piece, in a wide neck (:func:`_is_wide`). What the border has
     left of a grain is only known to be a part, so it counts as at least as large as the piece.
 
-    Parameters
-    ----------
-    contacts
-        Of :func:`~regolith_studio.imaging.label_table.contact_areas`.
-    sizes
-        Voxels of each label.
-    border
-        Labels at the border.
+    - ``contacts``: of :func:`~regolith_studio.imaging.label_table.contact_areas`.
+    - ``sizes``: voxels of each label.
+    - ``border``: labels at the border.
     """
     cut, rests = set(border), set(border)
     diameters = {label: voxel_diameter(size) for label, size in sizes.items()}
@@ -330,14 +289,9 @@ def _is_wide(area: float, piece: float, other: float, is_rest: bool) -> bool:
     Two balls that touch seem to do so in a disc of area 2 pi w r, where w is the widest gap that blur closes
     and 1 / r = 1 / r1 + 1 / r2.
 
-    Parameters
-    ----------
-    area
-        In faces of a voxel.
-    piece, other
-        Diameters of balls of the labels' volumes, in voxels.
-    is_rest
-        Whether the other is what the border has left of a grain.
+    - ``area``: in faces of a voxel.
+    - ``piece``, ``other``: diameters of balls of the labels' volumes, in voxels.
+    - ``is_rest``: whether the other is what the border has left of a grain.
     """
     neck = 2.0 * np.sqrt(area / np.pi) / min(piece, other)
     if neck > WIDE_NECK_OF_SMALL and 2.0 * piece**3 <= other**3:
@@ -379,18 +333,11 @@ def _shares_inside(box: Box, shape: tuple[int, int, int]) -> FloatArray:
 class LabelCut:
     """A label and where it lies: all that its particle follows from.
 
-    Parameters
-    ----------
-    labels, grey
-        The volumes; grey values only where surfaces are taken from them.
-    label, name, n_voxels, weight
-        Its number, and what is known of its particle.
-    box, wider
-        Box of the label, and what of the grey values about it is used.
-    voxel_size, origin
-        Of the volume.
-    strays
-        Number of its pieces, and of voxels outside of the largest.
+    - ``labels``, ``grey``: the volumes; grey values only where surfaces are taken from them.
+    - ``label``, ``name``, ``n_voxels``, ``weight``: its number, and what is known of its particle.
+    - ``box``, ``wider``: box of the label, and what of the grey values about it is used.
+    - ``voxel_size``, ``origin``: of the volume.
+    - ``strays``: number of its pieces, and of voxels outside of the largest.
     """
 
     labels: SharedArray

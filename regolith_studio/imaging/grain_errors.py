@@ -29,14 +29,9 @@ _NUMBERS = 3
 class ScanOfGrain:
     """What the errors of a grain depend on besides its form.
 
-    Parameters
-    ----------
-    across
-        Diameter in voxels of the ball of its volume; beyond the ends of the table those hold.
-    noise
-        As a share of the contrast.
-    follows_grey
-        Whether the surface follows the grey values, or is the mask's scaled to their volume.
+    - ``across``: diameter in voxels of the ball of its volume; beyond the ends of the table those hold.
+    - ``noise``: as a share of the contrast.
+    - ``follows_grey``: whether the surface follows the grey values, or is the mask's scaled to their volume.
     """
 
     across: float
@@ -47,10 +42,7 @@ class ScanOfGrain:
 def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tuple[float, float]]:
     """Between which values the true ones lie in 90 % of grains, by key; nothing where too few were found.
 
-    Parameters
-    ----------
-    measured
-        Descriptors, those of :data:`KEYS` and the aspect ratio among them.
+    ``measured``: descriptors, those of :data:`KEYS` and the aspect ratio among them.
     """
     shape: Shape = "round" if measured["aspect_ratio"] < ROUND else "other"
     low, high = _errors(shape, scan.across, scan.noise, scan.follows_grey) / 100.0

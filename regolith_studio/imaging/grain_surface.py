@@ -68,10 +68,7 @@ chosen on balls, ellipsoids, polyhedra and rough grains of 24 to 48 voxels."""
 class GreySurface:
     """A surface from grey values, in voxels.
 
-    Parameters
-    ----------
-    scan
-        Its size and noise; where it does not follow the grey values, only its volume is theirs.
+    ``scan``: its size and noise; where it does not follow the grey values, only its volume is theirs.
     """
 
     mesh: Mesh
@@ -90,16 +87,12 @@ def grey_mesh(
     Where other grains touch it, the surface is that of the mask; brightness between two grains
     belongs to the nearer one.
 
-    Parameters
-    ----------
-    crop
-        The grain with at least :data:`MARGIN` voxels about it, where the volume has as many.
-    body
-        The grain's voxels that count: of one piece, without pores.
-    iterations, pass_band
-        Of the smoothing; without any iteration the surface is the contour alone.
-    cubic_voxels
-        Whether voxels have equal edges; otherwise the blur is measured along each, and the twicing is less.
+    - ``crop``: the grain with at least :data:`MARGIN` voxels about it, where the volume has as many.
+    - ``body``: the grain's voxels that count: of one piece, without pores.
+    - ``iterations``, ``pass_band``: of the smoothing; without any iteration the surface is the contour
+      alone.
+    - ``cubic_voxels``: whether voxels have equal edges; otherwise the blur is measured along each, and the
+      twicing is less.
     """
     others, values = crop.others | (crop.own & ~body), crop.values.astype(np.float32)
     inside, outside = depth(body), depth(~body)
@@ -193,12 +186,8 @@ def clipped_share(values: NDArray[Any], body: BoolArray) -> tuple[float, int]:
 def mask_mesh(body: BoolArray, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
     """The surface of a mask, with the volume of its voxels, in voxels of the mask.
 
-    Parameters
-    ----------
-    body
-        The grain's voxels: of one piece.
-    iterations, pass_band
-        Of the smoothing; without any iteration the surface is the contour alone.
+    ``body``: the grain's voxels: of one piece. ``iterations``, ``pass_band``: of the smoothing; without any
+    iteration the surface is the contour alone.
     """
     padded = np.pad(body, _MASK_MARGIN)
     rough = contour(padded.astype(np.float32), 0.5, (1.0, 1.0, 1.0))

@@ -32,19 +32,11 @@ _Slabs = Iterator[NDArray[Any]]
 def write_label_file(path: Path, labels: SliceSource, highest: int) -> Iterator[tuple[int, int]]:
     """Write a label volume, as its suffix says, telling after each slab how many are done, of how many.
 
-    Parameters
-    ----------
-    path
-        A name that ends in one of :data:`LABEL_SUFFIXES`; the file appears when it is complete.
-    highest
-        The highest label, by which voxels have 16 or 32 bits.
+    ``path``: a name that ends in one of :data:`LABEL_SUFFIXES`; the file appears when it is complete.
+    ``highest``: the highest label, by which voxels have 16 or 32 bits.
 
-    Raises
-    ------
-    InputError
-        If the suffix is another.
-    FileError
-        If the file cannot be written, or the folder of an OME-Zarr is there and holds something else.
+    Raises InputError if the suffix is another. Raises FileError if the file cannot be written, or the folder
+    of an OME-Zarr is there and holds something else.
     """
     stored = np.dtype(np.uint16 if highest < 2**16 else np.uint32)
     return _write(path, labels, stored)
@@ -77,10 +69,7 @@ def _write(path: Path, labels: SliceSource, stored: np.dtype[Any]) -> Iterator[t
 def label_suffix(path: Path) -> str:
     """The suffix of a label file in lower case.
 
-    Raises
-    ------
-    InputError
-        If it is none of :data:`LABEL_SUFFIXES`.
+    Raises InputError if it is none of :data:`LABEL_SUFFIXES`.
     """
     suffix = path.suffix.lower()
     if suffix not in LABEL_SUFFIXES:
@@ -91,10 +80,7 @@ def label_suffix(path: Path) -> str:
 def check_label_place(path: Path) -> None:
     """Refuse a folder that holds anything but labels that were written before.
 
-    Raises
-    ------
-    FileError
-        If the labels would be written into a folder of something else.
+    Raises FileError if the labels would be written into a folder of something else.
     """
     if path.is_dir() and any(path.iterdir()) and not (path / f"{_LISTED}.sha256").is_file():
         raise FileError(f"The folder {path} holds no labels that were written here; choose another name.")

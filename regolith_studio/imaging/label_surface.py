@@ -16,14 +16,9 @@ MAX_EDGE = 128
 class LabelSurface:
     """Triangles between labels and what has none.
 
-    Parameters
-    ----------
-    vertices
-        In micrometres from the corner of the volume, shape (n, 3).
-    faces
-        Shape (m, 3).
-    labels
-        Of each face, shape (m,).
+    - ``vertices``: in micrometres from the corner of the volume, shape (n, 3).
+    - ``faces``: shape (m, 3).
+    - ``labels``: of each face, shape (m,).
     """
 
     vertices: FloatArray
@@ -34,14 +29,9 @@ class LabelSurface:
 def label_surface(labels: NDArray[Any], voxel_size: FloatArray, max_edge: int = MAX_EDGE) -> LabelSurface:
     """Surfaces of labels by surface nets (VTK), of every n-th voxel of a large volume.
 
-    Parameters
-    ----------
-    labels
-        0 and less between grains, shape (nx, ny, nz).
-    voxel_size
-        Edges of a voxel along x, y and z, in micrometres, shape (3,).
-    max_edge
-        Voxels along the longest edge that are contoured.
+    - ``labels``: 0 and less between grains, shape (nx, ny, nz).
+    - ``voxel_size``: edges of a voxel along x, y and z, in micrometres, shape (3,).
+    - ``max_edge``: voxels along the longest edge that are contoured.
     """
     import pyvista
 

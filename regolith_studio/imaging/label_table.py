@@ -27,12 +27,8 @@ _statistics: Any = cc3d.statistics
 class LabelTable:
     """Labels in ascending order, their voxels and boxes.
 
-    Parameters
-    ----------
-    labels, counts
-        Shape (n,).
-    low, high
-        First voxel of the box, and the one after its last, along x, y, z; shape (n, 3).
+    ``labels``, ``counts``: shape (n,). ``low``, ``high``: first voxel of the box, and the one after its
+    last, along x, y, z; shape (n, 3).
     """
 
     labels: IntArray
@@ -54,14 +50,10 @@ class LabelTable:
 class GrainCrop:
     """What lies in a box about one grain.
 
-    Parameters
-    ----------
-    own
-        The grain's voxels, shape (nx, ny, nz).
-    others
-        Voxels of other grains, same shape.
-    values
-        Grey values, same shape; the median of the background where a label below 0 says that there are none.
+    - ``own``: the grain's voxels, shape (nx, ny, nz).
+    - ``others``: voxels of other grains, same shape.
+    - ``values``: grey values, same shape; the median of the background where a label below 0 says that there
+      are none.
     """
 
     own: BoolArray
@@ -81,15 +73,9 @@ def grain_crop(labels: SharedArray, grey: SharedArray, label: int, box: Box) -> 
 def label_table(source: Volume, run: ParallelMap = map) -> LabelTable:
     """The labels of a volume; 0 and less is no particle.
 
-    Parameters
-    ----------
-    run
-        Applies what is done to slabs.
+    ``run``: applies what is done to slabs.
 
-    Raises
-    ------
-    InputError
-        If the volume holds grey values, no label, or labels beyond :data:`MAX_LABEL`.
+    Raises InputError if the volume holds grey values, no label, or labels beyond :data:`MAX_LABEL`.
     """
     if source.kind != "labels":
         raise InputError(f"{source.name} holds grey values; segment it before particles can be extracted.")
@@ -196,12 +182,8 @@ _PLACES = 256
 class ScanCircle:
     """The convex hull of the pixels that a scanner sees, by its half-planes ``normals @ p <= offsets``.
 
-    Parameters
-    ----------
-    normals, offsets
-        Shapes (n, 2) and (n,), in pixels.
-    places
-        Points spread evenly over the hull, shape (m, 2).
+    ``normals``, ``offsets``: shapes (n, 2) and (n,), in pixels. ``places``: points spread evenly over the
+    hull, shape (m, 2).
     """
 
     normals: FloatArray
@@ -226,10 +208,7 @@ class ScanCircle:
         normal: the erosion of the circle, of area pi R^2 - R P + A for a convex grain of perimeter P and area
         A (Miles 1974).
 
-        Parameters
-        ----------
-        shadow
-            Pixels that have a voxel of the grain, shape (bx, by).
+        ``shadow``: pixels that have a voxel of the grain, shape (bx, by).
         """
         points = _corners(shadow, 1.0) - (np.array(shadow.shape) - 1.0) / 2.0
         extent = (points @ self.normals.T).max(axis=0)

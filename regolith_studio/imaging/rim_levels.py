@@ -75,14 +75,9 @@ _DEEPEST = _BEGIN[1] * _BLURS[1] + _LAYERS * _THICKNESS
 class GrainShares:
     """What the grey values about a grain say of each voxel.
 
-    Parameters
-    ----------
-    share
-        Share of the grain, blurred and noisy; shape (nx, ny, nz).
-    full
-        Voxels within that are full whatever their grey value is, same shape.
-    noise
-        Standard deviation of the share.
+    - ``share``: share of the grain, blurred and noisy; shape (nx, ny, nz).
+    - ``full``: voxels within that are full whatever their grey value is, same shape.
+    - ``noise``: standard deviation of the share.
     """
 
     share: Floats
@@ -95,16 +90,11 @@ def grain_shares(
 ) -> GrainShares | str:
     """Shares of a grain, or why the grey values do not tell them.
 
-    Parameters
-    ----------
-    values
-        Grey values, shape (nx, ny, nz).
-    others
-        Voxels of other grains.
-    inside, outside
-        Depth in the grain's mask, and distance to it.
-    cubic_voxels
-        Whether the blur is the same along all axes; otherwise the shell begins where the widest one ends.
+    - ``values``: grey values, shape (nx, ny, nz).
+    - ``others``: voxels of other grains.
+    - ``inside``, ``outside``: depth in the grain's mask, and distance to it.
+    - ``cubic_voxels``: whether the blur is the same along all axes; otherwise the shell begins where the
+      widest one ends.
     """
     far = np.minimum(outside, depth(~others)) if others.any() else outside
     beyond = far > (RIM if np.count_nonzero(far > RIM) >= _MIN_VOXELS else CONTACT)
@@ -184,12 +174,8 @@ def _depths(body: BoolArray, surface: Mesh) -> Floats:
 def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floats] | None:
     """Contrast of full grain about each voxel, and the depth from which on voxels are full; or nothing.
 
-    Parameters
-    ----------
-    depths
-        Distance to the surface of voxels that may tell the level, else 0.
-    blur
-        Standard deviation of the edge, in voxels.
+    ``depths``: distance to the surface of voxels that may tell the level, else 0. ``blur``: standard
+    deviation of the edge, in voxels.
     """
     above, noise = grain.above, grain.noise
     wide = max(blur, _MIN_WIDTH)

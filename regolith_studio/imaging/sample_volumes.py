@@ -20,10 +20,7 @@ SampleScan = Literal["synthetic", "gradient"]
 def sample_file(kind: SampleVolume | Literal["strokes"], scan: SampleScan = "synthetic") -> Path:
     """Path of a shipped scan; ``strokes`` are voxels that were painted on the scan ``gradient``.
 
-    Raises
-    ------
-    MissingRequirement
-        If the installation lacks its samples.
+    Raises MissingRequirement if the installation lacks its samples.
     """
     return resource("samples", "ct", f"{scan}-{kind}.tif")
 
@@ -31,10 +28,7 @@ def sample_file(kind: SampleVolume | Literal["strokes"], scan: SampleScan = "syn
 def sample_volume(kind: SampleVolume = "labels", scan: SampleScan = "synthetic") -> Volume:
     """A shipped synthetic scan, of 60 grains or of 30: its label volume, or its grey values.
 
-    Raises
-    ------
-    MissingRequirement
-        If the installation lacks its samples.
+    Raises MissingRequirement if the installation lacks its samples.
     """
     with tifffile.TiffFile(sample_file(kind, scan)) as file:
         slices: Any = file.asarray()

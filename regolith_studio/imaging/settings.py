@@ -27,25 +27,17 @@ MAX_VOXELS = 2**63 - 1
 class DenoiseSettings:
     """How grey values are smoothed before they are thresholded; lengths in voxels.
 
-    Parameters
-    ----------
-    method
-        ``gaussian`` is fast and rounds edges a little; ``median`` keeps edges and removes single
-        outliers; ``non-local-means`` averages similar patches, keeps edges and fine cracks best and
-        takes longest.
-    sigma
-        Standard deviation of the Gaussian.
-    size
-        Edge of the median's cube; odd.
-    strength
-        Of the non-local means: patches count as similar up to this many standard deviations of the noise.
-    patch, reach
-        Of the non-local means: edge of a patch (odd), and how far away patches are searched.
+    - ``method``: ``gaussian`` is fast and rounds edges a little; ``median`` keeps edges and removes single
+      outliers; ``non-local-means`` averages similar patches, keeps edges and fine cracks best and takes
+      longest.
+    - ``sigma``: standard deviation of the Gaussian.
+    - ``size``: edge of the median's cube; odd.
+    - ``strength``: of the non-local means: patches count as similar up to this many standard deviations of
+      the noise.
+    - ``patch``, ``reach``: of the non-local means: edge of a patch (odd), and how far away patches are
+      searched.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     method: DenoiseMethod = setting(
@@ -89,27 +81,17 @@ class DenoiseSettings:
 class ThresholdSettings:
     """Which voxels are grains.
 
-    Parameters
-    ----------
-    method
-        ``otsu`` parts the histogram in two, ``multi-otsu`` in `classes` (pores, resin and minerals of
-        different brightness), ``manual`` takes `value`, and ``probability`` reads the volume as the
-        probability of a voxel to be grain, as ilastik exports it: 0 to 1, or over the range of its type.
-    value
-        Level of ``manual`` in grey values, of ``probability`` from 0 to 1.
-    classes, boundary
-        Of ``multi-otsu``: parts of the histogram, 3 to 5, and which boundary between them is taken,
-        counted from the dark end from 1.
-    dark
-        Whether grains are what lies below the level.
-    low
-        Of ``probability``: the lower threshold of a hysteresis. Voxels from there on belong to a grain if
-        they are connected to some from `value` on (Canny 1986); 0 for no hysteresis.
+    - ``method``: ``otsu`` parts the histogram in two, ``multi-otsu`` in `classes` (pores, resin and minerals
+      of different brightness), ``manual`` takes `value`, and ``probability`` reads the volume as the
+      probability of a voxel to be grain, as ilastik exports it: 0 to 1, or over the range of its type.
+    - ``value``: level of ``manual`` in grey values, of ``probability`` from 0 to 1.
+    - ``classes``, ``boundary``: of ``multi-otsu``: parts of the histogram, 3 to 5, and which boundary
+      between them is taken, counted from the dark end from 1.
+    - ``dark``: whether grains are what lies below the level.
+    - ``low``: of ``probability``: the lower threshold of a hysteresis. Voxels from there on belong to a
+      grain if they are connected to some from `value` on (Canny 1986); 0 for no hysteresis.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     method: ThresholdMethod = setting(
@@ -165,21 +147,12 @@ class ThresholdSettings:
 class CleaningSettings:
     """Morphology of the mask, in voxels.
 
-    Parameters
-    ----------
-    opening
-        Removes what is thinner than about twice this: specks and thin bridges between grains.
-    closing
-        Closes cracks and gaps thinner than about twice this.
-    fill_pores
-        Fill pores inside grains that have no way out.
-    min_voxels
-        Drop what has fewer voxels, before and after grains are split.
+    - ``opening``: removes what is thinner than about twice this: specks and thin bridges between grains.
+    - ``closing``: closes cracks and gaps thinner than about twice this.
+    - ``fill_pores``: fill pores inside grains that have no way out.
+    - ``min_voxels``: drop what has fewer voxels, before and after grains are split.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     opening: int = setting(
@@ -211,20 +184,12 @@ class CleaningSettings:
 class SplittingSettings:
     """How touching grains are parted.
 
-    Parameters
-    ----------
-    enabled
-        Otherwise each connected body is one grain.
-    h_maxima
-        Persistence up to which a peak of the distance map is no grain of its own, in voxels.
-    relative
-        The same as a share of the peak's height, 0 to 1; the larger of the two counts. Large grains
-        have larger bumps, so that a mixture of sizes is parted better with some of both.
+    - ``enabled``: otherwise each connected body is one grain.
+    - ``h_maxima``: persistence up to which a peak of the distance map is no grain of its own, in voxels.
+    - ``relative``: the same as a share of the peak's height, 0 to 1; the larger of the two counts. Large
+      grains have larger bumps, so that a mixture of sizes is parted better with some of both.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     enabled: bool = setting(
@@ -254,14 +219,9 @@ class SplittingSettings:
 class TileSettings:
     """When and how a body is cut into tiles, in voxels.
 
-    Parameters
-    ----------
-    largest
-        Voxels of the box of a body that is not cut.
-    core
-        Edge of a tile.
-    margin
-        Looked at around a tile at first; doubled, at most twice, where it cuts a grain.
+    - ``largest``: voxels of the box of a body that is not cut.
+    - ``core``: edge of a tile.
+    - ``margin``: looked at around a tile at first; doubled, at most twice, where it cuts a grain.
     """
 
     largest: int = 2**23
@@ -273,27 +233,16 @@ class TileSettings:
 class ExtractionSettings:
     """Which labels become particles, and how they are contoured.
 
-    Parameters
-    ----------
-    exclude_border
-        Leave out what touches the border of the volume, and so is cut.
-    min_voxels
-        Leave out what has fewer voxels; 268 are those of a ball of 8 voxels in diameter.
-    warn_diameter
-        Note on particles below this diameter, in voxels, that their shape is coarse; thin ones by their
-        shortest axis.
-    fill_pores
-        Close pores that have no way out.
-    iterations, pass_band
-        Of the smoothing (:func:`~regolith_studio.imaging.contours.LowPass`).
-    surface
-        What surfaces are taken from: the ``grey`` values about each label where they are at hand
-        (:mod:`~regolith_studio.imaging.grain_surface`), or its ``mask`` always.
+    - ``exclude_border``: leave out what touches the border of the volume, and so is cut.
+    - ``min_voxels``: leave out what has fewer voxels; 268 are those of a ball of 8 voxels in diameter.
+    - ``warn_diameter``: note on particles below this diameter, in voxels, that their shape is coarse; thin
+      ones by their shortest axis.
+    - ``fill_pores``: close pores that have no way out.
+    - ``iterations``, ``pass_band``: of the smoothing (:func:`~regolith_studio.imaging.contours.LowPass`).
+    - ``surface``: what surfaces are taken from: the ``grey`` values about each label where they are at hand
+      (:mod:`~regolith_studio.imaging.grain_surface`), or its ``mask`` always.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     exclude_border: bool = setting(

@@ -20,14 +20,10 @@ class SliceImages:
     In a file whose slices along z follow each other, a slice along x is scattered over every page: it is
     taken from a copy of every `step`-th voxel instead.
 
-    Parameters
-    ----------
-    array
-        The voxels, shape (nx, ny, nz), in memory or mapped from a file.
-    coarse
-        Every `step`-th voxel along each axis, in memory; ``None`` where `array` is in memory itself.
-    step
-        1 where there is no copy.
+    - ``array``: the voxels, shape (nx, ny, nz), in memory or mapped from a file.
+    - ``coarse``: every `step`-th voxel along each axis, in memory; ``None`` where `array` is in memory
+      itself.
+    - ``step``: 1 where there is no copy.
     """
 
     array: NDArray[Any]

@@ -53,14 +53,10 @@ _MIN_COSINE = 0.2
 class RefinementSettings:
     """Number of steps of the refinement, and its smoothing.
 
-    Parameters
-    ----------
-    steps
-        Number of moves.
-    iterations, pass_band
-        Of the smoothing after each step (:class:`~regolith_studio.imaging.contours.LowPass`).
-    twicing
-        Factor of the difference by one more and stronger smoothing, which is added at the end.
+    - ``steps``: number of moves.
+    - ``iterations``, ``pass_band``: of the smoothing after each step
+      (:class:`~regolith_studio.imaging.contours.LowPass`).
+    - ``twicing``: factor of the difference by one more and stronger smoothing, which is added at the end.
     """
 
     steps: int
@@ -74,15 +70,10 @@ def refined_to_scan(
 ) -> Mesh:
     """The mesh, in voxels, moved to where it reproduces the shares best.
 
-    Parameters
-    ----------
-    share
-        Share of the grain in each voxel, blurred and noisy.
-    rim
-        Voxels that count.
-    blur
-        Standard deviations along the axes of the blur as an edge shows it, in voxels, the voxel's own width
-        in it, shape (3,).
+    - ``share``: share of the grain in each voxel, blurred and noisy.
+    - ``rim``: voxels that count.
+    - ``blur``: standard deviations along the axes of the blur as an edge shows it, in voxels, the voxel's
+      own width in it, shape (3,).
     """
     point_spread = np.sqrt(np.maximum(blur**2 - _BOX, 0.0))
 

@@ -62,24 +62,15 @@ class Volume:
     The array is not copied, since volumes can fill the memory: the volume holds a read-only view,
     and whoever made the array must leave it alone.
 
-    Parameters
-    ----------
-    array
-        Shape (nx, ny, nz), indexed [x, y, z]; files that keep slices first are transposed where
-        they are read. Whole numbers where `kind` is ``labels``, 0 being no particle.
-    voxel_size
-        Edge lengths of a voxel along x, y and z, in micrometres, shape (3,).
-    kind
-        ``labels`` (each particle its own number) or ``grey``.
-    name
-        As the user knows the volume.
-    origin
-        Place of the centre of voxel [0, 0, 0] in the whole volume that this is a part of, in voxels.
+    - ``array``: shape (nx, ny, nz), indexed [x, y, z]; files that keep slices first are transposed where
+      they are read. Whole numbers where `kind` is ``labels``, 0 being no particle.
+    - ``voxel_size``: edge lengths of a voxel along x, y and z, in micrometres, shape (3,).
+    - ``kind``: ``labels`` (each particle its own number) or ``grey``.
+    - ``name``: as the user knows the volume.
+    - ``origin``: place of the centre of voxel [0, 0, 0] in the whole volume that this is a part of, in
+      voxels.
 
-    Raises
-    ------
-    InputError
-        If the array is not three-dimensional, empty or of a type that `kind` cannot have.
+    Raises InputError if the array is not three-dimensional, empty or of a type that `kind` cannot have.
     """
 
     array: NDArray[Any]

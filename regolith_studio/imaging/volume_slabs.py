@@ -85,14 +85,9 @@ def slab_ranges(shape: tuple[int, int, int], voxels: int = SLAB_VOXELS) -> list[
 class ThickSlab:
     """A slab with slices more on either side, where there are any.
 
-    Parameters
-    ----------
-    first, stop
-        The slab's first slice and the one after its last.
-    values
-        Shape (nx, ny, thickness with margins).
-    inner
-        Where the slab is in `values`, along z.
+    - ``first``, ``stop``: the slab's first slice and the one after its last.
+    - ``values``: shape (nx, ny, thickness with margins).
+    - ``inner``: where the slab is in `values`, along z.
     """
 
     first: int
@@ -125,17 +120,10 @@ class ScratchArrays:
 
     The folder vanishes when the scratch is closed, is forgotten, or the program ends.
 
-    Parameters
-    ----------
-    folder
-        Where the temporary folder is made; ``None`` keeps everything in memory.
+    ``folder``: where the temporary folder is made; ``None`` keeps everything in memory.
 
-    Attributes
-    ----------
-    folder
-        The temporary folder, if there is one.
-    checkpoint
-        Keeps the slabs of a probability map as they are finished, if somebody has opened one.
+    ``folder``: the temporary folder, if there is one. ``checkpoint``: keeps the slabs of a probability map
+    as they are finished, if somebody has opened one.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -161,10 +149,8 @@ class ScratchArrays:
     def zeros(self, shape: tuple[int, int, int], dtype: DTypeLike) -> NDArray[Any]:
         """Zeros of shape (nx, ny, nz) whose slices along z are contiguous.
 
-        Raises
-        ------
-        MissingRequirement
-            If the disk has no room for them: a file that outgrows its disk ends the process.
+        Raises MissingRequirement if the disk has no room for them: a file that outgrows its disk ends the
+        process.
         """
         slices_first = shape[::-1]
         if self.folder is None:
@@ -204,10 +190,7 @@ class SharedArray:
     :meth:`write` is in the file when the call returns; what it writes into a mapped array itself
     others see after :meth:`publish`.
 
-    Parameters
-    ----------
-    array
-        Shape (nx, ny, nz), slices contiguous.
+    ``array``: shape (nx, ny, nz), slices contiguous.
     """
 
     def __init__(self, array: NDArray[Any]) -> None:
@@ -258,12 +241,8 @@ def unpacked(
 ) -> Generator[tuple[int, int], None, Volume]:
     """All voxels of a volume in an array of `scratch`; tells how many of how many parts are read.
 
-    Parameters
-    ----------
-    source
-        A :class:`~regolith_studio.imaging.volume.Volume`, which is returned as it is, or what reads slices.
-    run
-        Reads the parts; a volume that must be read in order is read by this process.
+    ``source``: a :class:`~regolith_studio.imaging.volume.Volume`, which is returned as it is, or what reads
+    slices. ``run``: reads the parts; a volume that must be read in order is read by this process.
     """
     if isinstance(source, Volume):
         return source
@@ -289,10 +268,7 @@ def in_batches(
 ) -> Iterator[_Done]:
     """Apply a function to items in order, several small ones in a task, so that tasks are worth sending.
 
-    Parameters
-    ----------
-    n_voxels
-        Size of an item; a task has :data:`BATCH_VOXELS` at least, where there are as many.
+    ``n_voxels``: size of an item; a task has :data:`BATCH_VOXELS` at least, where there are as many.
     """
     for results in run(partial(_apply_to_each, function), _batches(items, n_voxels)):
         yield from results
@@ -325,11 +301,8 @@ def sparse_slices(source: SliceSource, seconds: float, *, in_order: bool = False
     The distance is halved until the time ends or every slice is read; slices of the last, unfinished halving
     are left out. The voxels of the result are longer along z, and wider where slices are thinned out.
 
-    Parameters
-    ----------
-    in_order
-        Take the first slices instead, for a file that must be unpacked from its beginning; the result then
-        fills only their part of the volume.
+    ``in_order``: take the first slices instead, for a file that must be unpacked from its beginning; the
+    result then fills only their part of the volume.
     """
     nx, ny, nz = source.shape
     slice_bytes = nx * ny * source.dtype.itemsize
@@ -379,21 +352,13 @@ def _first_places(count: int, most: int) -> Iterator[range]:
 class VolumeRegion:
     """The voxels of a box, or the means of cubes of them; a ``SliceSource`` itself.
 
-    Parameters
-    ----------
-    source
-        The whole volume.
-    box
-        What of it is used.
-    bin
-        Edge of the cubes in voxels. Voxels at the far faces of the box that fill no cube are left out.
-        Means of integers are rounded, half to even, and keep their type.
+    - ``source``: the whole volume.
+    - ``box``: what of it is used.
+    - ``bin``: edge of the cubes in voxels. Voxels at the far faces of the box that fill no cube are left
+      out. Means of integers are rounded, half to even, and keep their type.
 
-    Raises
-    ------
-    InputError
-        If the box has no voxel or reaches beyond the volume, is thinner than one cube, or if labels, which
-        have no mean, are to be averaged.
+    Raises InputError if the box has no voxel or reaches beyond the volume, is thinner than one cube, or if
+    labels, which have no mean, are to be averaged.
     """
 
     source: SliceSource

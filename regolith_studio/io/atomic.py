@@ -49,10 +49,7 @@ _AT_FDCWD = -100
 def staged_file(path: Path) -> Iterator[IO[bytes]]:
     """A stream to a hidden file beside `path`, which takes its name if no exception is raised.
 
-    Raises
-    ------
-    FileError
-        If it cannot be written, or its folder is not there.
+    Raises FileError if it cannot be written, or its folder is not there.
     """
     try:
         with _hidden_path(path) as hidden:
@@ -71,10 +68,7 @@ def staged_file(path: Path) -> Iterator[IO[bytes]]:
 def write_bytes(path: Path, content: bytes) -> None:
     """Write a file in one step.
 
-    Raises
-    ------
-    FileError
-        If it cannot be written.
+    Raises FileError if it cannot be written.
     """
     with staged_file(path) as stream:
         stream.write(content)
@@ -83,15 +77,9 @@ def write_bytes(path: Path, content: bytes) -> None:
 def write_in_stage(stage: Path, name: str, content: bytes) -> None:
     """Write a file in a folder that is staged itself: what an interruption leaves of it goes with it.
 
-    Parameters
-    ----------
-    name
-        Relative to the folder, with slashes.
+    ``name``: relative to the folder, with slashes.
 
-    Raises
-    ------
-    FileError
-        If it cannot be written, or would not be in the folder.
+    Raises FileError if it cannot be written, or would not be in the folder.
     """
     path = path_inside(stage, name)
     try:
@@ -103,10 +91,7 @@ def write_in_stage(stage: Path, name: str, content: bytes) -> None:
 def write_files(contents: Mapping[Path, bytes]) -> None:
     """Write files that belong together: all are complete before the first takes its place, in their order.
 
-    Raises
-    ------
-    FileError
-        If one cannot be written.
+    Raises FileError if one cannot be written.
     """
     with contextlib.ExitStack() as stack:
         for path, content in reversed(list(contents.items())):
@@ -124,10 +109,7 @@ def staged_folder(folder: Path, kind: str) -> Iterator[Path]:
     replaced in one step. In a folder with other files, which are kept, the new files take the places of the
     earlier ones one by one.
 
-    Raises
-    ------
-    FileError
-        If it cannot be written, or another process is writing to it.
+    Raises FileError if it cannot be written, or another process is writing to it.
     """
     with _reported(folder), hidden_folder(folder) as stage:
         yield stage
@@ -141,10 +123,7 @@ def staged_together(folder: Path, kind: str, file: Path) -> Iterator[tuple[Path,
     Both are complete by then, and nothing is done in between: only what ends the process within some
     microseconds leaves the new folder beside the earlier file. The file may be one of the folder.
 
-    Raises
-    ------
-    FileError
-        As these do.
+    Raises FileError as these do.
     """
     place, path = Path(os.path.realpath(folder)), Path(os.path.realpath(file))
     if path.is_relative_to(place):
@@ -180,10 +159,7 @@ def listed_hashes(folder: Path) -> dict[str, str]:
 def check_listed(name: str, sha256: str, listed: Mapping[str, str]) -> None:
     """Check a file against the list of its folder.
 
-    Raises
-    ------
-    FileError
-        If the list has another SHA-256 for it.
+    Raises FileError if the list has another SHA-256 for it.
     """
     if listed.get(name, sha256) != sha256:
         raise FileError(
@@ -197,12 +173,8 @@ def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[s
 
     Files may be given as an iterable of pairs, so that they are never in memory together.
 
-    Raises
-    ------
-    OSError
-        If something cannot be written; `target` is then unchanged.
-    FileError
-        If another process is writing to it.
+    Raises OSError if something cannot be written; `target` is then unchanged. Raises FileError if another
+    process is writing to it.
     """
     with filled_folder(target, files) as stage:
         exchange(stage, target)
@@ -216,10 +188,7 @@ def filled_folder(
 ) -> Iterator[Path]:
     """A hidden folder beside `target` with these files, flushed to the disk, for :func:`exchange`.
 
-    Raises
-    ------
-    OSError, FileError
-        As :func:`replace_folder`.
+    Raises OSError or FileError as :func:`replace_folder`.
     """
     with hidden_folder(target) as stage:
         _fill(stage, files)
@@ -387,10 +356,7 @@ class _FileSyncer:
     def close(self, handle: int) -> None:
         """Schedule the file of a handle to be flushed and closed.
 
-        Raises
-        ------
-        OSError
-            If that has failed for an earlier file.
+        Raises OSError if that has failed for an earlier file.
         """
         self._pending.append(self._threads.submit(_sync_and_close, handle))
         while len(self._pending) > 4 * CONCURRENT_SYNCS:

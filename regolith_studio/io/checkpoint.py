@@ -29,14 +29,9 @@ _SUBJECT = "subject"
 class CheckpointRecord:
     """Result of one item of a run.
 
-    Parameters
-    ----------
-    index
-        Position of the item in the run.
-    values
-        Plain values, as JSON has them; floats are kept to the last bit.
-    blobs
-        Byte strings by name, such as the content of a file.
+    - ``index``: position of the item in the run.
+    - ``values``: plain values, as JSON has them; floats are kept to the last bit.
+    - ``blobs``: byte strings by name, such as the content of a file.
     """
 
     index: int
@@ -55,15 +50,10 @@ class Checkpoint:
     def create(cls, path: Path, subject: Mapping[str, Any]) -> Self:
         """An empty checkpoint in place of any old one.
 
-        Parameters
-        ----------
-        subject
-            What the results depend on, as JSON; a run about anything else cannot be resumed from this file.
+        ``subject``: what the results depend on, as JSON; a run about anything else cannot be resumed from
+        this file.
 
-        Raises
-        ------
-        FileError
-            If the file cannot be written, or another process has it open.
+        Raises FileError if the file cannot be written, or another process has it open.
         """
         with _errors_of(path):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -75,18 +65,11 @@ class Checkpoint:
     def resume(cls, path: Path, subject: Mapping[str, Any], kind: str = "run") -> Self:
         """The checkpoint as it was left; damaged records are dropped, an empty file is a beginning.
 
-        Parameters
-        ----------
-        subject
-            As for :meth:`create`.
-        kind
-            What was interrupted, for the message: a run or a study.
+        ``subject``: as for :meth:`create`. ``kind``: what was interrupted, for the message: a run or a
+        study.
 
-        Raises
-        ------
-        FileError
-            If the file is damaged or another process has it open; or if the subject differs, naming the
-            first key that does.
+        Raises FileError if the file is damaged or another process has it open; or if the subject differs,
+        naming the first key that does.
         """
         with _errors_of(path):
             if not path.stat().st_size:  # a full disk or a kill at the very beginning
@@ -109,12 +92,8 @@ class Checkpoint:
     def add(self, records: Iterable[CheckpointRecord]) -> None:
         """Add records in one transaction; they are on the disk when this returns.
 
-        Raises
-        ------
-        FileError
-            If they cannot be written, for example to a full disk.
-        ValueError
-            If a value is not finite.
+        Raises FileError if they cannot be written, for example to a full disk. Raises ValueError if a value
+        is not finite.
         """
         check_not_stopped()
         records = list(records)
@@ -190,10 +169,7 @@ class Checkpoint:
 def read_note(path: Path, name: str) -> Any:
     """A note of a checkpoint that is not open, or ``None``; an empty file has none.
 
-    Raises
-    ------
-    FileError
-        If the file is damaged or another process has it open.
+    Raises FileError if the file is damaged or another process has it open.
     """
     with _errors_of(path):
         if not path.stat().st_size:

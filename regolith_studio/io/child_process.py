@@ -31,12 +31,8 @@ def start_module(
 ) -> "subprocess.Popen[bytes]":
     """Start ``python -m module`` with pipes to its standard input and output, and one thread a library.
 
-    Parameters
-    ----------
-    environment
-        Variables besides those of this process.
-    stdout, bufsize, start_new_session
-        As for :class:`subprocess.Popen`.
+    ``environment``: variables besides those of this process. ``stdout``, ``bufsize``, ``start_new_session``:
+    as for :class:`subprocess.Popen`.
     """
     # a checkout that is not installed is found by its path; -P keeps files of the current folder out
     found = [str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")]

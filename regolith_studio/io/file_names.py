@@ -46,11 +46,8 @@ def unique_name(name: str, group: str, used: dict[str, int]) -> str:
 
     What cannot be printed becomes a line, and what is too long is cut.
 
-    Parameters
-    ----------
-    used
-        The :func:`name_key` of each earlier name, and the last number that it was given with; the new name
-        is added.
+    ``used``: the :func:`name_key` of each earlier name, and the last number that it was given with; the new
+    name is added.
     """
     name = _printable(name)
     if name_key(name) in used and group:
@@ -73,10 +70,7 @@ def name_key(name: str) -> str:
 def path_inside(folder: Path, name: str) -> Path:
     """The path of a file in a folder by its relative name with slashes.
 
-    Raises
-    ------
-    FileError
-        If it is not in the folder, also where a link leads out of it.
+    Raises FileError if it is not in the folder, also where a link leads out of it.
     """
     path = folder / name
     parts = name.split("/")

@@ -24,15 +24,9 @@ class _Nonfinite(str):
 def parse_strict_json(text: str, where: str) -> Any:
     """Parse JSON without duplicate keys, NaN and infinities (1e999 included).
 
-    Parameters
-    ----------
-    where
-        What to call the text in messages.
+    ``where``: what to call the text in messages.
 
-    Raises
-    ------
-    FileError
-        If the text is not JSON, nests too deeply, repeats a key or holds NaN or an infinity.
+    Raises FileError if the text is not JSON, nests too deeply, repeats a key or holds NaN or an infinity.
     """
     try:
         loose = json.loads(text, object_pairs_hook=_Pairs, parse_constant=_Nonfinite)
@@ -63,10 +57,7 @@ def _strict(value: Any, where: str, place: str) -> Any:
 def canonical_json(value: Any) -> str:
     """ASCII with sorted keys, two spaces a level, lists of numbers on one line, floats by ``repr``.
 
-    Raises
-    ------
-    ValueError
-        If a number is not finite.
+    Raises ValueError if a number is not finite.
     """
     return _canonical(value, "") + "\n"
 
@@ -84,10 +75,7 @@ def _canonical(value: Any, indent: str) -> str:
 def json_bytes(document: Any) -> bytes:
     """UTF-8 with one space a level, keys in the given order, ending in a newline.
 
-    Raises
-    ------
-    ValueError
-        If a number is not finite.
+    Raises ValueError if a number is not finite.
     """
     return _indented(document, 0).encode("utf-8", UNPRINTABLE) + b"\n"
 
@@ -95,12 +83,8 @@ def json_bytes(document: Any) -> bytes:
 class JsonListWriter:
     """Writes a JSON list item by item; the bytes are those of :func:`json_bytes` for the whole.
 
-    Parameters
-    ----------
-    head
-        Entries before the list in the object that contains it; without it the list is the whole document.
-    key
-        Of the list in that object.
+    ``head``: entries before the list in the object that contains it; without it the list is the whole
+    document. ``key``: of the list in that object.
     """
 
     def __init__(self, stream: IO[bytes], head: Mapping[str, Any] | None = None, key: str = "") -> None:

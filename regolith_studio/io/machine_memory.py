@@ -20,17 +20,10 @@ def machine_memory() -> int:
 def check_memory(n_bytes: float, what: str) -> None:
     """Check before the work that its result can be held.
 
-    Parameters
-    ----------
-    n_bytes
-        Bytes that it needs at least.
-    what
-        What needs them, in the plural, as the beginning of a sentence.
+    ``n_bytes``: bytes that it needs at least. ``what``: what needs them, in the plural, as the beginning of
+    a sentence.
 
-    Raises
-    ------
-    InputError
-        If that is more than the machine has.
+    Raises InputError if that is more than the machine has.
     """
     if n_bytes > (there := machine_memory()):
         raise InputError(

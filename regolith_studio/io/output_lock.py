@@ -46,12 +46,8 @@ def output_lock(output: Path) -> Iterator[None]:
 
     Its parent folders are made. What interrupted writes to it have left under hidden names is removed.
 
-    Raises
-    ------
-    FileError
-        If another process is writing to it.
-    OSError
-        If its parent folder cannot be written.
+    Raises FileError if another process is writing to it. Raises OSError if its parent folder cannot be
+    written.
     """
     place = Path(os.path.realpath(output))
     with _guard:
@@ -105,12 +101,7 @@ def _acquire(place: Path, output: Path) -> None:
 def lock_file(file: Path) -> int:
     """Handle of a file that only this process has locked, until it closes the handle or ends.
 
-    Raises
-    ------
-    BlockingIOError
-        If it is locked already.
-    OSError
-        If it cannot be made.
+    Raises BlockingIOError if it is locked already. Raises OSError if it cannot be made.
     """
     while True:
         handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)

@@ -35,15 +35,9 @@ _DAMAGE = (
 def read_arrays(path: Path, what: str) -> dict[str, NDArray[Any]]:
     """All arrays of a ``.npz`` file by their names; no objects.
 
-    Parameters
-    ----------
-    what
-        It is to hold, for the message: ``shapes of a run``.
+    ``what``: it is to hold, for the message: ``shapes of a run``.
 
-    Raises
-    ------
-    FileError
-        If it cannot be read, is damaged, or would unpack to more than MAX_UNPACKED_BYTES.
+    Raises FileError if it cannot be read, is damaged, or would unpack to more than MAX_UNPACKED_BYTES.
     """
     check_regular(path)
     with _said(path, what):
@@ -55,10 +49,7 @@ def read_arrays(path: Path, what: str) -> dict[str, NDArray[Any]]:
 def read_archive(path: Path, what: str) -> dict[str, bytes]:
     """The bytes of all files of a ZIP archive by their names.
 
-    Raises
-    ------
-    FileError
-        As :func:`read_arrays`.
+    Raises FileError as :func:`read_arrays`.
     """
     check_regular(path)
     with _said(path, what):
@@ -70,10 +61,7 @@ def read_archive(path: Path, what: str) -> dict[str, bytes]:
 def read_json(path: Path, largest: int = MAX_JSON_BYTES) -> Any:
     """A JSON document, as :func:`~regolith_studio.io.json_text.parse_strict_json` reads it.
 
-    Raises
-    ------
-    FileError
-        If it cannot be read, is larger than that many bytes, or is no strict JSON in UTF-8.
+    Raises FileError if it cannot be read, is larger than that many bytes, or is no strict JSON in UTF-8.
     """
     check_regular(path)
     try:
@@ -89,10 +77,7 @@ def read_json(path: Path, largest: int = MAX_JSON_BYTES) -> Any:
 def check_regular(path: Path) -> None:
     """Check that a path is that of a file: a pipe would be waited for, and a device has no end.
 
-    Raises
-    ------
-    FileError
-        If it is none, or not there.
+    Raises FileError if it is none, or not there.
     """
     try:
         mode = path.stat().st_mode
@@ -132,10 +117,7 @@ def arrays_document(arrays: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, A
 def arrays_from(document: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     """The arrays by name: inverse of :func:`arrays_document`.
 
-    Raises
-    ------
-    FileError
-        If the bytes of one are not those that were written, or its type or shape is none.
+    Raises FileError if the bytes of one are not those that were written, or its type or shape is none.
     """
     return {name: _array(name, entry) for name, entry in document.items()}
 

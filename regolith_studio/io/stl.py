@@ -16,17 +16,11 @@ _FIRST_RECORD = HEADER_SIZE + 4  # the number of triangles, uint32, follows the 
 def stl_bytes(triangles: NDArray[np.float64], header: str) -> bytes:
     """Triangles as binary STL with unit normals and float32 coordinates.
 
-    Parameters
-    ----------
-    triangles
-        Corner coordinates, shape (m, 3, 3): triangle, corner, axis.
-    header
-        At most 80 ASCII characters.
+    ``triangles``: corner coordinates, shape (m, 3, 3): triangle, corner, axis. ``header``: at most 80 ASCII
+    characters.
 
-    Raises
-    ------
-    ValueError
-        If the header is too long or begins with ``solid``, which readers take for the ASCII form.
+    Raises ValueError if the header is too long or begins with ``solid``, which readers take for the ASCII
+    form.
     """
     if len(header) > HEADER_SIZE or not header.isascii() or header.startswith("solid"):
         raise ValueError(
@@ -45,10 +39,8 @@ def stl_bytes(triangles: NDArray[np.float64], header: str) -> bytes:
 def stl_triangles(content: bytes) -> NDArray[np.float64]:
     """Corner coordinates of the triangles in binary STL, shape (m, 3, 3).
 
-    Raises
-    ------
-    ValueError
-        If the length is not the one that the number of triangles requires, or a coordinate is not finite.
+    Raises ValueError if the length is not the one that the number of triangles requires, or a coordinate is
+    not finite.
     """
     count = int.from_bytes(content[HEADER_SIZE:_FIRST_RECORD], "little")
     if len(content) < _FIRST_RECORD or len(content) != _FIRST_RECORD + RECORD.itemsize * count:

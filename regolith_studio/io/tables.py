@@ -24,12 +24,8 @@ _NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|inf)")
 class Column:
     """One column of a table.
 
-    Parameters
-    ----------
-    name
-        Key in JSON and first word of the CSV header.
-    unit
-        Unit as printed: ``um``, ``%``, ``s``; empty for text, counts and ratios.
+    ``name``: key in JSON and first word of the CSV header. ``unit``: unit as printed: ``um``, ``%``, ``s``;
+    empty for text, counts and ratios.
     """
 
     name: str
@@ -45,21 +41,12 @@ class Column:
 class Table:
     """Named columns and rows of equal length.
 
-    Parameters
-    ----------
-    title
-        One line that describes the rows.
-    columns
-        One :class:`Column` a column.
-    rows
-        One sequence of cells a row.
-    notes
-        Sentences for the reader: definitions, settings, seeds.
+    - ``title``: one line that describes the rows.
+    - ``columns``: one :class:`Column` a column.
+    - ``rows``: one sequence of cells a row.
+    - ``notes``: sentences for the reader: definitions, settings, seeds.
 
-    Raises
-    ------
-    ValueError
-        If a name appears twice or a row has another length than `columns`.
+    Raises ValueError if a name appears twice or a row has another length than `columns`.
     """
 
     title: str
@@ -82,10 +69,7 @@ class Table:
     def column(self, name: str) -> tuple[Cell, ...]:
         """The cells of the column called `name`, top to bottom.
 
-        Raises
-        ------
-        KeyError
-            If there is no such column.
+        Raises KeyError if there is no such column.
         """
         for index, column in enumerate(self.columns):
             if column.name == name:

@@ -38,10 +38,7 @@ class TableReading:
 def table_convention(text: str) -> TableConvention:
     """The convention that a user names.
 
-    Raises
-    ------
-    InputError
-        If there is none of that name.
+    Raises InputError if there is none of that name.
     """
     for convention in CONVENTIONS:
         if text == convention:
@@ -68,24 +65,14 @@ def read_coefficients(
 ) -> CoefficientFile:
     """The radius function of one particle, from rows ``l m Re Im`` or ``l, m, C, S``.
 
-    Parameters
-    ----------
-    path
-        Text with four columns; more are ignored (SHTOOLS adds errors).
-    unit
-        Unit of the radius.
-    convention
-        ``complex``: orthonormal complex harmonics with the Condon-Shortley phase, as the particle
-        tables of NIST lineage have them. ``shtools-4pi``, ``shtools-ortho``: real ones without the
-        phase. ``auto``: complex if there are rows of m < 0, SHTOOLS with 4 pi if commas separate.
+    - ``path``: text with four columns; more are ignored (SHTOOLS adds errors).
+    - ``unit``: unit of the radius.
+    - ``convention``: ``complex``: orthonormal complex harmonics with the Condon-Shortley phase, as the
+      particle tables of NIST lineage have them. ``shtools-4pi``, ``shtools-ortho``: real ones without the
+      phase. ``auto``: complex if there are rows of m < 0, SHTOOLS with 4 pi if commas separate.
 
-    Raises
-    ------
-    FileError
-        With one sentence if the file is no such table, rows are missing or not finite, or its
-        convention is ambiguous.
-    InputError
-        If there is no such unit.
+    Raises FileError with one sentence if the file is no such table, rows are missing or not finite, or its
+    convention is ambiguous. Raises InputError if there is no such unit.
     """
     factor = unit_factor(unit)
     path = Path(path)
@@ -167,12 +154,8 @@ def read_table_particle(
 
     Its mesh has 5,120 faces, or 20,480 where the degree is above 16, and the volume of the smooth surface.
 
-    Raises
-    ------
-    FileError
-        With one sentence if the file is no such table.
-    GeometryError
-        With one sentence if its surface passes through its centre.
+    Raises FileError with one sentence if the file is no such table. Raises GeometryError with one sentence
+    if its surface passes through its centre.
     """
     from regolith_studio.harmonics.surface import reconstruct
 

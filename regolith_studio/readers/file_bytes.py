@@ -11,10 +11,7 @@ from regolith_studio.readers.sandbox.parent import checked_size
 def read_bytes(path: Path, largest: int | None = None) -> bytes:
     """The bytes of a regular file.
 
-    Raises
-    ------
-    FileError
-        If there is no such file, it cannot be read, or it is larger than `largest` bytes.
+    Raises FileError if there is no such file, it cannot be read, or it is larger than `largest` bytes.
     """
     size = checked_size(path)
     if largest is not None and size > largest:

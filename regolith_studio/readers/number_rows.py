@@ -28,20 +28,13 @@ _AMBIGUOUS = re.compile(rb"[+-]?[1-9]\d{0,2},\d{3}")
 class NumberRows:
     """A table of text.
 
-    Parameters
-    ----------
-    names
-        The column names of its header line; empty where there is none, or it has another number of words.
-    numbers
-        Shape (n, columns), float64; whatever is not finite is kept.
-    units
-        Units of the columns from a second header line; empty where there is none.
-    header
-        The line of words before the numbers, or the last comment, which may name the columns.
-    has_header
-        Whether the former is no comment.
-    separator
-        Between the columns; empty for spaces.
+    - ``names``: the column names of its header line; empty where there is none, or it has another number of
+      words.
+    - ``numbers``: shape (n, columns), float64; whatever is not finite is kept.
+    - ``units``: units of the columns from a second header line; empty where there is none.
+    - ``header``: the line of words before the numbers, or the last comment, which may name the columns.
+    - ``has_header``: whether the former is no comment.
+    - ``separator``: between the columns; empty for spaces.
     """
 
     names: tuple[str, ...]
@@ -78,10 +71,7 @@ class _Style:
 def utf8_text(data: bytes) -> bytes:
     """A text as UTF-8: from UTF-8, from UTF-16 without a byte order mark, or from Windows-1252.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence if it is none of them.
+    Raises FileError with the second half of a sentence if it is none of them.
     """
     start = data[:4096]
     if b"\0" in start:
@@ -113,10 +103,7 @@ def number_rows(
     Whether commas are decimal commas is decided by all rows. Numbers may be in quotes.
     Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments, the last of which may name the columns.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence that names the first line that is no row of numbers.
+    Raises FileError with the second half of a sentence that names the first line that is no row of numbers.
     """
     if not data:
         raise FileError("is empty: it has no bytes at all.")

@@ -16,10 +16,8 @@ def read_object_examples(
 ) -> tuple[tuple[tuple[int, int, int], int], ...]:
     """Voxels along x, y, z with the index of their class in `classes`, from a CSV file.
 
-    Raises
-    ------
-    FileError
-        If it cannot be read, has other columns than x, y, z and class, or a row that is no voxel and class.
+    Raises FileError if it cannot be read, has other columns than x, y, z and class, or a row that is no
+    voxel and class.
     """
     try:
         lines = read_bytes(path, _LARGEST).decode("utf-8-sig").splitlines()

@@ -189,15 +189,9 @@ def collect_particles(
 ) -> LoadedParticles:
     """The results of `read_each` under unique names.
 
-    Parameters
-    ----------
-    problems
-        Of folders, which come before those of files.
+    ``problems``: of folders, which come before those of files.
 
-    Raises
-    ------
-    FileError
-        If there is no particle: the first problem's message, and the number of the others.
+    Raises FileError if there is no particle: the first problem's message, and the number of the others.
     """
     results = list(results)
     particles = [result for result in results if isinstance(result, Particle)]
@@ -311,10 +305,7 @@ def mesh_files(
     A path may lead into an archive as if that were a folder. Weights come from the ``particles.csv`` that
     ``extract`` writes beside its meshes; members of archives that are refused are added to `problems`.
 
-    Raises
-    ------
-    FileError
-        If a folder holds no mesh file, or its table of weights is not that of its list.
+    Raises FileError if a folder holds no mesh file, or its table of weights is not that of its list.
     """
     given = [Path(path) for path in paths]
     several = sum(path.is_dir() or is_archive(path) for path in given) > 1
@@ -462,10 +453,7 @@ def read_weights(folder: Path, listed: Mapping[str, str] | None = None) -> dict[
     A table that somebody else wrote, with no columns ``name`` and ``weight``, or without a positive
     number in the second, gives no weights: they are an addition to the meshes, not a part of them.
 
-    Raises
-    ------
-    FileError
-        If the SHA-256 of the table is `listed` and another.
+    Raises FileError if the SHA-256 of the table is `listed` and another.
     """
     path = folder / WEIGHTS_FILE
     found: dict[str, float] = {}

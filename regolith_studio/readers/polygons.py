@@ -14,19 +14,11 @@ def triangulated(
 ) -> NDArray[np.int64]:
     """Triangles of polygons that are stored one after the other.
 
-    Parameters
-    ----------
-    vertices
-        Shape (n, 3); every corner must index it.
-    corners
-        Vertex indices of all polygons, flat, shape (sum of sizes,).
-    sizes
-        Number of corners of each polygon, shape (k,). Those with fewer than three give nothing.
+    - ``vertices``: shape (n, 3); every corner must index it.
+    - ``corners``: vertex indices of all polygons, flat, shape (sum of sizes,).
+    - ``sizes``: number of corners of each polygon, shape (k,). Those with fewer than three give nothing.
 
-    Returns
-    -------
-    NDArray[np.int64]
-        Shape (m, 3), in the polygons' order for polygons of the same size.
+    Returns shape (m, 3), in the polygons' order for polygons of the same size.
     """
     starts = np.cumsum(sizes) - sizes
     parts = [

@@ -24,21 +24,12 @@ _METRES = 1e-6
 class ParticlePositions:
     """Centres of particles, and how large they are.
 
-    Parameters
-    ----------
-    points
-        Shape (n, 3), metres.
-    diameters
-        Shape (n,), metres; None where the file does not state it.
-    name
-        As the user knows the file.
-    notes
-        Sentences that a user should read.
+    - ``points``: shape (n, 3), metres.
+    - ``diameters``: shape (n,), metres; None where the file does not state it.
+    - ``name``: as the user knows the file.
+    - ``notes``: sentences that a user should read.
 
-    Raises
-    ------
-    ValueError
-        If the shapes are others.
+    Raises ValueError if the shapes are others.
     """
 
     points: FloatArray
@@ -66,24 +57,15 @@ def read_positions(
 ) -> ParticlePositions:
     """The particles of a position file; of several time steps the last.
 
-    Parameters
-    ----------
-    path
-        A table (.csv, .txt, .dat), XYZ, a LAMMPS dump, or VTK points (.vtk, .vtp, .vtu).
-    unit
-        Unit of the file's numbers, where the file names none itself (``x [mm]``, the units of a LAMMPS dump).
-    columns
-        Names of all columns of a table or XYZ file, in their order: x, y, z, perhaps diameter or radius, and
-        any other name for the rest (``type x y z vx vy vz``). By default those of the file.
-    sandbox
-        The child process that parses the file; by default the one of this process.
+    - ``path``: a table (.csv, .txt, .dat), XYZ, a LAMMPS dump, or VTK points (.vtk, .vtp, .vtu).
+    - ``unit``: unit of the file's numbers, where the file names none itself (``x [mm]``, the units of a
+      LAMMPS dump).
+    - ``columns``: names of all columns of a table or XYZ file, in their order: x, y, z, perhaps diameter or
+      radius, and any other name for the rest (``type x y z vx vy vz``). By default those of the file.
+    - ``sandbox``: the child process that parses the file; by default the one of this process.
 
-    Raises
-    ------
-    FileError
-        With one sentence if the file cannot be read.
-    InputError
-        If there is no such unit.
+    Raises FileError with one sentence if the file cannot be read. Raises InputError if there is no such
+    unit.
     """
     if unit not in UNITS or unit == "voxel":
         raise InputError(

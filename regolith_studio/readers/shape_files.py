@@ -39,16 +39,10 @@ _NO_SOURCE = (
 class ShapeSource:
     """What particles can be drawn from.
 
-    Parameters
-    ----------
-    content
-        A sample (to fit a model to), a fitted model, or a card.
-    name
-        Short, for people and for provenance.
-    sha256
-        Of the file's bytes; empty where there is no file.
-    notes
-        Sentences about the source for the user.
+    - ``content``: a sample (to fit a model to), a fitted model, or a card.
+    - ``name``: short, for people and for provenance.
+    - ``sha256``: of the file's bytes; empty where there is no file.
+    - ``notes``: sentences about the source for the user.
     """
 
     content: Sample | FittedModel | MaterialCard
@@ -70,10 +64,7 @@ def is_shape_source(text: str) -> bool:
 def read_shape_source(text: str) -> ShapeSource:
     """The fit, model or card whose file, stem or name this is; files come first.
 
-    Raises
-    ------
-    FileError
-        With one sentence if there is nothing of that name, or it is broken.
+    Raises FileError with one sentence if there is nothing of that name, or it is broken.
     """
     path = _text_file(Path(text))
     if not path.exists() and text in materials():
@@ -248,10 +239,7 @@ def check_document(
 ) -> None:
     """Validate a document.
 
-    Raises
-    ------
-    FileError
-        With one sentence: that this is a broken `called`, and the first entry that is wrong.
+    Raises FileError with one sentence: that this is a broken `called`, and the first entry that is wrong.
     """
     try:
         kind.model_validate(document)

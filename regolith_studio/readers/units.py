@@ -40,10 +40,7 @@ def in_one_unit(
 
     They stay as they are where all are in one of `UNITS`, and become micrometres otherwise.
 
-    Parameters
-    ----------
-    lengths, names
-        One for each axis.
+    ``lengths``, ``names``: one for each axis.
     """
     keys = [unit_named(name or "") for name in names]
     known = [key for key in keys if key is not None]
@@ -57,10 +54,7 @@ def in_one_unit(
 def unit_factor(unit: str) -> float:
     """Micrometres in `unit`: a key of `FILE_UNITS`, or ``voxel:SIZE`` with the voxel's edge in micrometres.
 
-    Raises
-    ------
-    InputError
-        If there is no such unit, or the voxel size is missing or not positive.
+    Raises InputError if there is no such unit, or the voxel size is missing or not positive.
     """
     key, _, size = unit.partition(":")
     if key == "voxel":

@@ -49,19 +49,11 @@ RIDGE = 0.1
 class FineDegrees:
     """ln P_l of the degrees above the hull field's: offset + slopes features + factor normal numbers.
 
-    Parameters
-    ----------
-    offset
-        Shape (m,), one for each degree.
-    slopes
-        Shape (m, d).
-    factor
-        Lower triangular, of the covariance that is left, shape (m, m).
+    - ``offset``: shape (m,), one for each degree.
+    - ``slopes``: shape (m, d).
+    - ``factor``: lower triangular, of the covariance that is left, shape (m, m).
 
-    Raises
-    ------
-    InputError
-        If a number is not finite.
+    Raises InputError if a number is not finite.
     """
 
     offset: FloatArray
@@ -132,17 +124,10 @@ REACH = 3.2
 class GaussianCopula:
     """The joint distribution of d numbers.
 
-    Parameters
-    ----------
-    quantiles
-        Of each number at even normal scores from -3.2 to 3.2, ascending, shape (q, d).
-    correlations
-        Of the normal scores, positive definite, shape (d, d).
+    ``quantiles``: of each number at even normal scores from -3.2 to 3.2, ascending, shape (q, d).
+    ``correlations``: of the normal scores, positive definite, shape (d, d).
 
-    Raises
-    ------
-    InputError
-        If the numbers do not define a distribution.
+    Raises InputError if the numbers do not define a distribution.
     """
 
     quantiles: FloatArray
@@ -221,10 +206,7 @@ _QUANTILES = np.linspace(0.01, 0.99, 50)
 class CalibrationOffset:
     """Features to ask for instead of drawn ones: median + shift + spread (drawn - median).
 
-    Parameters
-    ----------
-    shift, spread
-        Shape (d,).
+    ``shift``, ``spread``: shape (d,).
     """
 
     shift: FloatArray
@@ -235,12 +217,8 @@ class CalibrationOffset:
 class CalibrationTarget:
     """Features that drawn particles should have.
 
-    Parameters
-    ----------
-    mean, deviation
-        Of the features, shape (d,).
-    outer
-        Outer features of the measured particles, shape (n, 3).
+    ``mean``, ``deviation``: of the features, shape (d,). ``outer``: outer features of the measured
+    particles, shape (n, 3).
     """
 
     mean: FloatArray

@@ -32,10 +32,7 @@ N_COMPARED = 5000
 def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
     """Generator of each chunk, and how many of its :data:`CHUNK` particles are wanted.
 
-    Raises
-    ------
-    InputError
-        If `n` is negative.
+    Raises InputError if `n` is negative.
     """
     if n < 0:
         raise InputError(f"The number of particles must not be negative, got {n}.")
@@ -47,10 +44,7 @@ def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
 def check_draws(n: int, l_max: int) -> None:
     """Check that the coefficients of `n` particles, and a copy of them, can be held.
 
-    Raises
-    ------
-    InputError
-        If this machine has less memory.
+    Raises InputError if this machine has less memory.
     """
     check_memory(2 * 8 * n * (l_max + 1) ** 2, f"{n:,} particles of l_max = {l_max}")
 
@@ -68,19 +62,13 @@ class ChunkedSampler(ABC):
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """The chunks of :meth:`draw`, in order.
 
-        Raises
-        ------
-        InputError
-            If `n` is negative, the range is none, or hardly any draw is acceptable.
+        Raises InputError if `n` is negative, the range is none, or hardly any draw is acceptable.
         """
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Realizations:
         """`n` particles, in the range of equivalent radii if given.
 
-        Raises
-        ------
-        InputError
-            As :meth:`draw_chunks`, or if the particles need more memory than there is.
+        Raises InputError as :meth:`draw_chunks`, or if the particles need more memory than there is.
         """
         check_draws(n, self.l_max)
         found = list(self.draw_chunks(n, seed, size_range))
@@ -103,10 +91,7 @@ class SizedSampler(ChunkedSampler):
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
 
-        Raises
-        ------
-        InputError
-            If `n` is negative or the range is none.
+        Raises InputError if `n` is negative or the range is none.
         """
         bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
@@ -127,10 +112,8 @@ class SizedSampler(ChunkedSampler):
     ) -> tuple[FloatArray, dict[str, IntArray]]:
         """Shapes of any size, shape (n, (l_max + 1)^2), and what :class:`Realizations` says of their origin.
 
-        Parameters
-        ----------
-        radii, components
-            Equivalent radius of each particle, and the component of the law of sizes, shape (n,).
+        ``radii``, ``components``: equivalent radius of each particle, and the component of the law of sizes,
+        shape (n,).
         """
 
 
@@ -138,12 +121,8 @@ class SizedSampler(ChunkedSampler):
 class RejectionBias:
     """How kept draws differ from the field, which rejects draws whose radius is not positive.
 
-    Parameters
-    ----------
-    rejected
-        Share of all draws.
-    mean_radius, second_degree
-        Mean radius and A_2 of the kept draws over those of all, less one.
+    ``rejected``: share of all draws. ``mean_radius``, ``second_degree``: mean radius and A_2 of the kept
+    draws over those of all, less one.
     """
 
     rejected: float
@@ -164,10 +143,7 @@ class RejectionSampler(ChunkedSampler):
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles with a positive radius, and in the range of equivalent radii if given.
 
-        Raises
-        ------
-        InputError
-            If `n` is negative, the range is none, or hardly any draw is acceptable.
+        Raises InputError if `n` is negative, the range is none, or hardly any draw is acceptable.
         """
         bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
@@ -207,17 +183,10 @@ def accepted(
 ) -> tuple[FloatArray, int]:
     """The first `wanted` acceptable rows out of rounds of proposals, and how many before them were not.
 
-    Parameters
-    ----------
-    propose
-        Draws that many rows; called with :data:`CHUNK` each round.
-    acceptable
-        Tells for each row of a round whether it is kept.
+    ``propose``: draws that many rows; called with :data:`CHUNK` each round. ``acceptable``: tells for each
+    row of a round whether it is kept.
 
-    Raises
-    ------
-    InputError
-        If hardly any proposal is acceptable.
+    Raises InputError if hardly any proposal is acceptable.
     """
     kept: list[FloatArray] = []
     count = rejected = 0

@@ -32,15 +32,10 @@ SHARES = (-1.0, 1.0)
 class HullGrid:
     """A grid of directions with the cosines between them.
 
-    Parameters
-    ----------
-    grid
-        Directions, weights and harmonics.
-    cosines
-        Shape (k, k).
-    reaches
-        For every :data:`ROWS` directions in a row: the first that lies less than a right angle from any of
-        them, and the one after the last, shape (ceil(k / ROWS), 2).
+    - ``grid``: directions, weights and harmonics.
+    - ``cosines``: shape (k, k).
+    - ``reaches``: for every :data:`ROWS` directions in a row: the first that lies less than a right angle
+      from any of them, and the one after the last, shape (ceil(k / ROWS), 2).
     """
 
     grid: SphereGrid
@@ -71,12 +66,7 @@ class HullGrid:
     def with_convexities(self, log_radii: FloatArray, convexities: FloatArray) -> FloatArray:
         """The surfaces drawn towards or away from their hulls until each fills the share asked for.
 
-        Parameters
-        ----------
-        log_radii
-            Shape (n, k).
-        convexities
-            By the measure of :meth:`convexities`, shape (n,).
+        ``log_radii``: shape (n, k). ``convexities``: by the measure of :meth:`convexities`, shape (n,).
         """
         distance, hulls = self._distance(log_radii)
         weights = self.grid.weights.astype(np.float32)
@@ -112,12 +102,7 @@ def supports(radii: Floats, cosines: Floats, reaches: IntArray, found: Floats) -
     As in a product of matrices, four directions and two bodies share what is read from memory; the inner loop
     is one that compilers turn into vectors. The order of the maxima does not change them.
 
-    Parameters
-    ----------
-    radii
-        Positive, shape (n, k).
-    cosines, reaches
-        See :class:`HullGrid`.
+    ``radii``: positive, shape (n, k). ``cosines``, ``reaches``: see :class:`HullGrid`.
     """
     n, size = radii.shape
     for first in range(0, n, BATCH):

@@ -191,10 +191,7 @@ def classifier_accuracy(measured: FloatArray, drawn: FloatArray, rng: np.random.
     Features are the standardised columns with their squares and products; as many particles of either kind;
     five-fold cross-validation (Lopez-Paz and Oquab 2017).
 
-    Raises
-    ------
-    InputError
-        If there are fewer than ten particles of one kind.
+    Raises InputError if there are fewer than ten particles of one kind.
     """
     n = min(len(measured), len(drawn))
     if n < 2 * N_FOLDS:

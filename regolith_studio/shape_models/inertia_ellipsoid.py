@@ -20,16 +20,10 @@ _MIN_MOMENT = 1e-30
 class PrincipalAxes:
     """Second moments about the star point of n particles.
 
-    Parameters
-    ----------
-    axes
-        Unit vectors as columns, the shortest extent first, right-handed, shape (n, 3, 3).
-    lengths
-        Root of the second moment over the volume along each, ascending, shape (n, 3).
-    skews
-        Third moment along each over the volume, shape (n, 3).
-    volumes
-        Shape (n,).
+    - ``axes``: unit vectors as columns, the shortest extent first, right-handed, shape (n, 3, 3).
+    - ``lengths``: root of the second moment over the volume along each, ascending, shape (n, 3).
+    - ``skews``: third moment along each over the volume, shape (n, 3).
+    - ``volumes``: shape (n,).
     """
 
     axes: FloatArray
@@ -95,14 +89,9 @@ def canonical(coefficients: FloatArray) -> FloatArray:
 def log_ellipsoids(directions: FloatArray, form: FloatArray, frames: FloatArray) -> FloatArray:
     """ln r of ellipsoids with a product of axes of one, shape (n, k).
 
-    Parameters
-    ----------
-    directions
-        Unit vectors, shape (k, 3).
-    form
-        ln(long / middle) and ln(middle / short), shape (n, 2).
-    frames
-        Unit vectors along the short, the middle and the long axis as columns, shape (n, 3, 3).
+    - ``directions``: unit vectors, shape (k, 3).
+    - ``form``: ln(long / middle) and ln(middle / short), shape (n, 2).
+    - ``frames``: unit vectors along the short, the middle and the long axis as columns, shape (n, 3, 3).
     """
     rising = np.column_stack([np.zeros(len(form)), form[:, 1], form[:, 0] + form[:, 1]])
     squares = np.exp(-2 * (rising - rising.mean(axis=1, keepdims=True)))

@@ -23,10 +23,7 @@ N_TRIED, RADII = 50, (1e-9, 1e12)
 def write_model(path: Path, model: FittedModel, provenance: Mapping[str, Any] | None = None) -> None:
     """Write a model in one step.
 
-    Raises
-    ------
-    FileError
-        If it cannot be written.
+    Raises FileError if it cannot be written.
     """
     write_bytes(path, model_bytes(model, provenance))
 
@@ -34,10 +31,7 @@ def write_model(path: Path, model: FittedModel, provenance: Mapping[str, Any] | 
 def model_bytes(model: FittedModel, provenance: Mapping[str, Any] | None = None) -> bytes:
     """The file of a model; the same model gives the same bytes.
 
-    Parameters
-    ----------
-    provenance
-        Plain values that describe the sample and the settings of the fit.
+    ``provenance``: plain values that describe the sample and the settings of the fit.
     """
     values, arrays = model.stored()
     document = {
@@ -57,10 +51,7 @@ def model_bytes(model: FittedModel, provenance: Mapping[str, Any] | None = None)
 def model_from(document: Mapping[str, Any]) -> FittedModel:
     """The model from the content of its file, which ``readers.shape_files`` reads.
 
-    Raises
-    ------
-    FileError
-        If it is damaged, or holds no model, or one that draws particles of no finite size.
+    Raises FileError if it is damaged, or holds no model, or one that draws particles of no finite size.
     """
     try:
         key, values, arrays = document["model"], document["values"], arrays_from(document["arrays"])

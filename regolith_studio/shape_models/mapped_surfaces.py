@@ -66,16 +66,10 @@ def mapped_radii(
 ) -> None:
     """Fill `radii` of mapped particles, shape (n, k).
 
-    Parameters
-    ----------
-    tables
-        Of :func:`radius_tables`.
-    picks
-        Which table each particle has, shape (n,).
-    inverses
-        Inverse of each linear map, shape (n, 3, 3).
-    directions
-        Unit vectors, shape (k, 3).
+    - ``tables``: of :func:`radius_tables`.
+    - ``picks``: which table each particle has, shape (n,).
+    - ``inverses``: inverse of each linear map, shape (n, 3, 3).
+    - ``directions``: unit vectors, shape (k, 3).
     """
     step = np.pi / (tables.shape[1] - 4)
     for n in range(len(picks)):
@@ -129,12 +123,8 @@ LIMITS = (0.8, 1.5)
 class MappedSurfaces:
     """Measured particles, to be mapped and expanded to a degree.
 
-    Parameters
-    ----------
-    coefficients
-        Of the radii, shape (n, (base + 1)^2), positive everywhere, also where they are cut at `l_max`.
-    l_max
-        Degree of the mapped particles, at most `base`.
+    ``coefficients``: of the radii, shape (n, (base + 1)^2), positive everywhere, also where they are cut at
+    `l_max`. ``l_max``: degree of the mapped particles, at most `base`.
     """
 
     coefficients: FloatArray
@@ -156,10 +146,8 @@ class MappedSurfaces:
     def of(cls, sample: Sample, l_max: int) -> "MappedSurfaces":
         """The particles of a sample whose radius is positive, with degrees up to twice `l_max`.
 
-        Raises
-        ------
-        InputError
-            If the sample is not expanded to `l_max`, or fewer than two particles have a positive radius.
+        Raises InputError if the sample is not expanded to `l_max`, or fewer than two particles have a
+        positive radius.
         """
         sample.truncated(l_max)  # refuses what the sample lacks
         usable = sample.truncated(min(sample.l_max, OVERSAMPLING * l_max)).star_shaped()
@@ -255,16 +243,10 @@ class SurfaceSettings:
 class SurfaceSampler(SizedSampler):
     """Base of fitted models that keep the measured particles and map them linearly.
 
-    Parameters
-    ----------
-    coefficients
-        Of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
-    settings
-        Of the fit.
-    unit
-        Length unit of the sample.
-    gain
-        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
+    - ``coefficients``: of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
+    - ``settings``: of the fit.
+    - ``unit``: length unit of the sample.
+    - ``gain``: factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
     """
 
     coefficients: FloatArray
@@ -328,11 +310,8 @@ class SurfaceSampler(SizedSampler):
 def measured_surfaces(sample: Sample, settings: SurfaceSettings, n_neighbours: int) -> MappedSurfaces:
     """The particles of a sample for a model with these settings.
 
-    Raises
-    ------
-    InputError
-        If a setting is out of range, the sample is not expanded so far, or fewer than two particles have a
-        positive radius.
+    Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
+    particles have a positive radius.
     """
     if n_neighbours < 1 or not 0 <= settings.size_jitter <= 1:
         raise InputError(

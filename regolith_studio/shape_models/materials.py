@@ -103,10 +103,7 @@ class MaterialCard(BaseModel):
 
         Samples below l = 3 have no hull field.
 
-        Raises
-        ------
-        InputError
-            If the sample has no such degree, or its amplitudes are those of no particles.
+        Raises InputError if the sample has no such degree, or its amplitudes are those of no particles.
         """
         degree = sample.l_max if l_max is None else l_max
         settings = LogFieldSettings(degree, "pooled", "log_normal", size_dependent=False)
@@ -139,15 +136,9 @@ class MaterialCard(BaseModel):
     def model(self, l_max: int | None = None) -> FittedModel:
         """The hull field where the card has one, or else the field in ln r.
 
-        Parameters
-        ----------
-        l_max
-            By default all degrees of the hull field, and up to 10 of the field in ln r.
+        ``l_max``: by default all degrees of the hull field, and up to 10 of the field in ln r.
 
-        Raises
-        ------
-        InputError
-            If the card does not have this degree.
+        Raises InputError if the card does not have this degree.
         """
         if self.hull_field is None:
             return self.field(min(FIELD_DEGREE, self.l_max) if l_max is None else l_max)
@@ -157,10 +148,7 @@ class MaterialCard(BaseModel):
     def field(self, l_max: int = FIELD_DEGREE) -> LogField:
         """The field in ln r of the material.
 
-        Raises
-        ------
-        InputError
-            If the card does not reach `l_max`.
+        Raises InputError if the card does not reach `l_max`.
         """
         if not 1 <= l_max <= self.l_max:
             raise InputError(f"The card {self.name} reaches from l = 1 to {self.l_max}, got l_max = {l_max}.")
@@ -206,10 +194,7 @@ def _shipped() -> dict[str, MaterialCard]:
 def read_card(path: Path) -> MaterialCard:
     """A card from its file.
 
-    Raises
-    ------
-    FileError
-        If the file cannot be read or is no card.
+    Raises FileError if the file cannot be read or is no card.
     """
     try:
         return card_from(path.read_bytes(), path.name)
@@ -220,10 +205,7 @@ def read_card(path: Path) -> MaterialCard:
 def card_from(content: bytes, name: str) -> MaterialCard:
     """A card from the bytes of the file called `name`.
 
-    Raises
-    ------
-    FileError
-        If it is no card.
+    Raises FileError if it is no card.
     """
     if len(content) > LARGEST_CARD:
         raise FileError(f"{name} is larger than a material card can be.")

@@ -67,16 +67,10 @@ class MixtureSettings:
 class Mixture:
     """A fitted mixture with k components.
 
-    Parameters
-    ----------
-    weights
-        Shares by number, descending, shape (k,).
-    means, deviations
-        Of the size, shape (k,).
-    spectra
-        A_l, shape (k, l_max + 1), A_0 = 0: the size stands for it.
-    log_likelihood
-        Of the sample, without its constant.
+    - ``weights``: shares by number, descending, shape (k,).
+    - ``means``, ``deviations``: of the size, shape (k,).
+    - ``spectra``: a_l, shape (k, l_max + 1), A_0 = 0: the size stands for it.
+    - ``log_likelihood``: of the sample, without its constant.
     """
 
     weights: FloatArray
@@ -120,10 +114,7 @@ class NamedComponents:
     def check_components(self, k: int) -> None:
         """Lock the spectra of `k` components and complete their names.
 
-        Raises
-        ------
-        InputError
-            If a variance is negative, or there are not as many names as components.
+        Raises InputError if a variance is negative, or there are not as many names as components.
         """
         spectra = locked_floats(self.spectra, (k, None), "spectra")
         if not (spectra >= 0).all():
@@ -155,10 +146,7 @@ class NamedComponents:
     def renamed(self, names: Sequence[str]) -> Self:
         """The same mixture with other names of its components.
 
-        Raises
-        ------
-        InputError
-            If there are not as many names as parts.
+        Raises InputError if there are not as many names as parts.
         """
         return replace(self, names=tuple(names))  # type: ignore[type-var]
 
@@ -174,10 +162,7 @@ def restored_components(
 def component_names(names: Sequence[str], k: int) -> tuple[str, ...]:
     """One name for each of `k` parts: those given, or "part 1", "part 2" and so on.
 
-    Raises
-    ------
-    InputError
-        If there are not as many.
+    Raises InputError if there are not as many.
     """
     found = tuple(names) or tuple(f"part {i + 1}" for i in range(k))
     if len(found) != k:
@@ -237,12 +222,8 @@ def _best_start(sizes: FloatArray, powers: FloatArray, k: int, settings: Mixture
 def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Generator) -> Mixture:
     """The mixture of `k` parts from one start by k-means++ on the sizes and the ln P_l.
 
-    Parameters
-    ----------
-    sizes
-        ln r_eq, or c_00 over its mean, shape (n,).
-    powers
-        Sum of squares at each degree, shape (n, l_max + 1).
+    ``sizes``: ln r_eq, or c_00 over its mean, shape (n,). ``powers``: sum of squares at each degree, shape
+    (n, l_max + 1).
     """
     # A degree without power in one component would have a variance of 0 and an infinite likelihood.
     floor = np.maximum(powers.mean(axis=0) * 1e-9, 1e-300)

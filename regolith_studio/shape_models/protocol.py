@@ -61,20 +61,14 @@ class EditableModel(Protocol):
     def with_amplitudes(self, amplitudes: ArrayLike) -> FittedModel:
         """The same model with other amplitudes (l_max,) for all its particles; the size stays.
 
-        Raises
-        ------
-        InputError
-            As :func:`checked_amplitudes`.
+        Raises InputError as :func:`checked_amplitudes`.
         """
 
 
 def relative_amplitudes(model: FittedModel) -> FloatArray:
     """Amplitudes of the degrees 1 .. l_max, shape (l_max,): the model's own, or those of its draws.
 
-    Raises
-    ------
-    InputError
-        If the model states none and cannot draw.
+    Raises InputError if the model states none and cannot draw.
     """
     if isinstance(model, SpectralModel):
         return model.relative_amplitudes()
@@ -85,10 +79,7 @@ def relative_amplitudes(model: FittedModel) -> FloatArray:
 def amplitudes_of(rows: FloatArray, logarithmic: bool = False) -> FloatArray:
     """Amplitudes of the degrees 1 .. l_max of particles with coefficients of shape (n, (l_max + 1)^2).
 
-    Parameters
-    ----------
-    logarithmic
-        Whether the coefficients are those of ln r.
+    ``logarithmic``: whether the coefficients are those of ln r.
     """
     shares = rows / (np.sqrt(4 * np.pi) if logarithmic else rows[:, :1])
     n_degrees = round(rows.shape[1] ** 0.5)
@@ -99,10 +90,7 @@ def amplitudes_of(rows: FloatArray, logarithmic: bool = False) -> FloatArray:
 def checked_amplitudes(amplitudes: ArrayLike, l_max: int) -> FloatArray:
     """The amplitudes as an array of shape (l_max,).
 
-    Raises
-    ------
-    InputError
-        If there are not as many, or one is negative or not finite.
+    Raises InputError if there are not as many, or one is negative or not finite.
     """
     values = np.asarray(amplitudes, dtype=np.float64)
     if values.shape != (l_max,) or not (np.isfinite(values).all() and (values >= 0).all()):

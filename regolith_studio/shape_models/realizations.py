@@ -38,24 +38,15 @@ _PATCH = np.stack(np.meshgrid(*[np.linspace(-1, 1, 9)] * 3), axis=-1).reshape(-1
 class Realizations:
     """Particles drawn from a fitted model.
 
-    Parameters
-    ----------
-    coefficients
-        Shape (n, (l_max + 1)^2); of the radius or of its natural logarithm, as `scale` says.
-    scale
-        ``radius`` or ``log_radius``.
-    model
-        Key of the model.
-    seed
-        Seed of the drawing; the same seed gives the same particles.
-    unit
-        Length unit of the radii.
-    rejected
-        Number of draws that were rejected because of a radius that is not positive or a size out of range.
-    parents
-        Index of the measured particle that each draw is based on, shape (n,); -1 for none.
-    components
-        Index of the mixture's component, shape (n,); 0 where there is only one.
+    - ``coefficients``: shape (n, (l_max + 1)^2); of the radius or of its natural logarithm, as `scale` says.
+    - ``scale``: ``radius`` or ``log_radius``.
+    - ``model``: key of the model.
+    - ``seed``: seed of the drawing; the same seed gives the same particles.
+    - ``unit``: length unit of the radii.
+    - ``rejected``: number of draws that were rejected because of a radius that is not positive or a size out
+      of range.
+    - ``parents``: index of the measured particle that each draw is based on, shape (n,); -1 for none.
+    - ``components``: index of the mixture's component, shape (n,); 0 where there is only one.
     """
 
     coefficients: FloatArray
@@ -124,10 +115,7 @@ def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) ->
 
     The vertices stand out a little, as in :func:`regolith_studio.harmonics.surface.reconstruct`.
 
-    Raises
-    ------
-    GeometryError
-        If the expansion has a negative radius, which no model of this package draws.
+    Raises GeometryError if the expansion has a negative radius, which no model of this package draws.
     """
     drawn = ShCoefficients(draws.coefficients[index])
     if draws.scale == "radius":

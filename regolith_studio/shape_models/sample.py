@@ -181,14 +181,9 @@ def _check(rows: FloatArray, names: tuple[str, ...]) -> None:
 class LogShapes:
     """The particles of a sample, with size and shape apart.
 
-    Parameters
-    ----------
-    coefficients
-        Of ln(r / r_eq), shape (n, (l_max + 1)^2).
-    equivalent_radii
-        r_eq, shape (n,).
-    left_out
-        Particles of the sample whose radius is not positive everywhere.
+    - ``coefficients``: of ln(r / r_eq), shape (n, (l_max + 1)^2).
+    - ``equivalent_radii``: r_eq, shape (n,).
+    - ``left_out``: particles of the sample whose radius is not positive everywhere.
     """
 
     coefficients: FloatArray
@@ -208,10 +203,7 @@ class LogShapes:
 def log_shapes(sample: Sample) -> LogShapes:
     """Size and shape of the particles with a positive radius.
 
-    Raises
-    ------
-    InputError
-        If fewer than two particles have one.
+    Raises InputError if fewer than two particles have one.
     """
     usable = sample.star_shaped()
     l_max = usable.l_max

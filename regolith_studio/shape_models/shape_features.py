@@ -98,13 +98,9 @@ def outer_features(log_radii: FloatArray, slopes: FloatArray, shares: FloatArray
     """Columns ln(longest / shortest extent along the axes of inertia), and ln(s / (1 - s)) of the sphericity
     and of the share of the hull, shape (n, 3).
 
-    Parameters
-    ----------
-    log_radii, slopes
-        ln r and the squared length of its gradient on the unit sphere, at the nodes of
-        ``shape_grid(l_max)``, shapes (n, k).
-    shares
-        ln(s / (1 - s)) of the share of the hull that is filled, shape (n,).
+    - ``log_radii``, ``slopes``: ln r and the squared length of its gradient on the unit sphere, at the nodes
+      of ``shape_grid(l_max)``, shapes (n, k).
+    - ``shares``: ln(s / (1 - s)) of the share of the hull that is filled, shape (n,).
     """
     grid = shape_grid(l_max).grid
     radii = np.exp(log_radii - log_radii.mean(axis=1, keepdims=True))

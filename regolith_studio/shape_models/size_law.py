@@ -39,10 +39,7 @@ class SizeLaw(Protocol):
 def checked_bounds(bounds: Bounds) -> Bounds:
     """The range itself, if it is one.
 
-    Raises
-    ------
-    InputError
-        If an end is not positive or above 1e12, or they are not in order.
+    Raises InputError if an end is not positive or above 1e12, or they are not in order.
     """
     if bounds is None:
         return None
@@ -58,12 +55,9 @@ def checked_bounds(bounds: Bounds) -> Bounds:
 class LogNormalSizes:
     """Mixture of normal distributions of ln r.
 
-    Parameters
-    ----------
-    weights, means, deviations
-        Of the components, shape (k,); means and standard deviations of ln r, r in the sample's unit.
-    limits
-        Radii to which the law is cut where no other range is asked for.
+    ``weights``, ``means``, ``deviations``: of the components, shape (k,); means and standard deviations of
+    ln r, r in the sample's unit. ``limits``: radii to which the law is cut where no other range is asked
+    for.
     """
 
     weights: FloatArray
@@ -170,12 +164,8 @@ class RosinRammlerSizes:
 
     Counted by number the law diverges towards small particles, so that a lower limit is part of it.
 
-    Parameters
-    ----------
-    scale, spread
-        Radius that 36.8 % of the volume exceeds, and the exponent.
-    smallest, largest
-        Limits of the radii.
+    ``scale``, ``spread``: radius that 36.8 % of the volume exceeds, and the exponent. ``smallest``,
+    ``largest``: limits of the radii.
     """
 
     scale: float
@@ -246,10 +236,7 @@ SIZE_LAWS: Mapping[str, Callable[[FloatArray], SizeLaw]] = {
 def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
     """A law from what it stored.
 
-    Raises
-    ------
-    InputError
-        If the values are no law.
+    Raises InputError if the values are no law.
     """
     try:
         if values["type"] == "log_normal_mixture":

@@ -61,23 +61,15 @@ class TargetChoice:
 class CoarseningStudy:
     """Relative errors of coarsened particles, by row.
 
-    Parameters
-    ----------
-    rows
-        How they were coarsened.
-    names
-        Of the particles that could be coarsened by every row.
-    errors
-        Absolute relative errors of Eq. 8 by particle, row and :data:`COLUMNS` (the last is the Jaccard
-        distance), shape (particles, rows, 7).
-    failures
-        Name and sentence of each particle that could not be coarsened.
-    n_unmet
-        By row, the number of particles whose request could not be met exactly, with a reason given.
-    box_metric
-        Of the bounding boxes: ``exact``, or ``trimesh`` to compare with the paper's program.
-    confidence, seed
-        Of the bootstrap bands.
+    - ``rows``: how they were coarsened.
+    - ``names``: of the particles that could be coarsened by every row.
+    - ``errors``: absolute relative errors of Eq. 8 by particle, row and :data:`COLUMNS` (the last is the
+      Jaccard distance), shape (particles, rows, 7).
+    - ``failures``: name and sentence of each particle that could not be coarsened.
+    - ``n_unmet``: by row, the number of particles whose request could not be met exactly, with a reason
+      given.
+    - ``box_metric``: of the bounding boxes: ``exact``, or ``trimesh`` to compare with the paper's program.
+    - ``confidence``, ``seed``: of the bootstrap bands.
     """
 
     rows: tuple[LossVariant, ...]
@@ -189,15 +181,9 @@ def coarsening_study(
     Yields a :class:`StudyProgress` a particle, whose `partial` is the study so far, and returns the study.
     A particle that cannot be coarsened is listed in `failures` and stops nothing.
 
-    Parameters
-    ----------
-    rows
-        The paper's rows with `method`, `n_facets` and `settings` where not given.
+    ``rows``: the paper's rows with `method`, `n_facets` and `settings` where not given.
 
-    Raises
-    ------
-    InputError
-        If there is no particle or no row, or no particle can be coarsened.
+    Raises InputError if there is no particle or no row, or no particle can be coarsened.
     """
     chosen = paper_variants(method, n_facets, **dict(settings or {})) if rows is None else tuple(rows)
     if not particles or not chosen:

@@ -43,21 +43,13 @@ Mapper = Callable[[Callable[[Mesh], "FloatArray | str"], Iterable[Mesh]], Iterab
 class LmaxStudy:
     """Relative errors of descriptors of fits cut at several degrees.
 
-    Parameters
-    ----------
-    degrees
-        Values of l_max, ascending.
-    keys
-        Descriptors, of ``CATALOGUE``.
-    names, groups
-        Of the particles that could be fitted.
-    errors
-        (D(fit) - D(particle)) / D(particle), shape (particles, degrees, keys); NaN where the fit has a
-        negative radius and bounds no solid.
-    failures
-        Name and sentence of each particle that could not be fitted.
-    confidence, seed
-        Of the bootstrap bands.
+    - ``degrees``: values of l_max, ascending.
+    - ``keys``: descriptors, of ``CATALOGUE``.
+    - ``names``, ``groups``: of the particles that could be fitted.
+    - ``errors``: (D(fit) - D(particle)) / D(particle), shape (particles, degrees, keys); NaN where the fit
+      has a negative radius and bounds no solid.
+    - ``failures``: name and sentence of each particle that could not be fitted.
+    - ``confidence``, ``seed``: of the bootstrap bands.
     """
 
     degrees: tuple[int, ...]
@@ -128,10 +120,7 @@ def lmax_errors(
     One fit to the highest degree, cut at each; the surfaces are meshed on icospheres as fine as their degree
     asks for and measured by the same routines as the particle. NaN where a fit has a negative radius.
 
-    Raises
-    ------
-    RegolithError
-        If the particle cannot be measured or fitted.
+    Raises RegolithError if the particle cannot be measured or fitted.
     """
     wanted = describe(mesh, keys)
     fit = fit_options.fit(mesh, max(degrees))
@@ -167,17 +156,9 @@ def lmax_study(
     Yields a :class:`StudyProgress` a particle, whose `partial` is the :class:`LmaxStudy` so far, and
     returns the study. A particle that cannot be fitted is listed in `failures` and stops nothing.
 
-    Parameters
-    ----------
-    mapper
-        ``map``, or the ordered lazy map of a process pool.
-    fit_options
-        How the fits are made.
+    ``mapper``: ``map``, or the ordered lazy map of a process pool. ``fit_options``: how the fits are made.
 
-    Raises
-    ------
-    InputError
-        If there is no particle or no degree, or no particle can be fitted.
+    Raises InputError if there is no particle or no degree, or no particle can be fitted.
     """
     if not particles or not degrees:
         raise InputError("A study of l_max needs at least one particle and one degree.")

@@ -40,18 +40,11 @@ CONDITION_METHODS = ("exact", "compound")
 class LossVariant:
     """One way to coarsen every particle: a row of a study.
 
-    Parameters
-    ----------
-    label
-        As printed.
-    weights
-        Of the loss; all 0 stands for the quadric start itself.
-    method
-        Key of the coarsening method.
-    n_facets
-        Facets.
-    settings
-        Of the method, as (name, value) pairs.
+    - ``label``: as printed.
+    - ``weights``: of the loss; all 0 stands for the quadric start itself.
+    - ``method``: key of the coarsening method.
+    - ``n_facets``: facets.
+    - ``settings``: of the method, as (name, value) pairs.
     """
 
     label: str
@@ -103,10 +96,7 @@ def losses() -> dict[str, Loss]:
 def loss_variants(names: Sequence[str], like: LossVariant) -> tuple[LossVariant, ...]:
     """A row for each name of :func:`losses`, in all else as `like`.
 
-    Raises
-    ------
-    InputError
-        If there is no such loss.
+    Raises InputError if there is no such loss.
     """
     known = losses()
     for name in names:
@@ -128,10 +118,7 @@ def facet_count_variants(
 ) -> tuple[LossVariant, ...]:
     """One row for each number of facets, ascending.
 
-    Raises
-    ------
-    InputError
-        If a number is no whole number.
+    Raises InputError if a number is no whole number.
     """
     for count in counts:
         if count != int(count):
@@ -151,10 +138,8 @@ def tradeoff_variants(
     the overlap alone. Where they make conditions, what each choice of conditions costs: the overlap alone,
     and every choice of the :data:`GROUPS` that `like` has weights for.
 
-    Raises
-    ------
-    InputError
-        If `like` has no weight on a descriptor, a factor is negative, or the method has no loss.
+    Raises InputError if `like` has no weight on a descriptor, a factor is negative, or the method has no
+    loss.
     """
     _check_factors(like, factors)
     overlap = like.weights[JACCARD] or 1.0
@@ -192,10 +177,7 @@ def sensitivity_variants(
 ) -> tuple[LossVariant, ...]:
     """The weights themselves, then each of them multiplied by each factor, alone.
 
-    Raises
-    ------
-    InputError
-        If no weight is above 0, a factor is negative, or the method has no loss.
+    Raises InputError if no weight is above 0, a factor is negative, or the method has no loss.
     """
     _check_factors(like, factors)
     rows = [like.relabelled(N_("As given"))]

@@ -20,10 +20,8 @@ from regolith_studio.io.tables import Cell, Column, Table
 class GalleryPolyhedron:
     """What a gallery keeps of a coarsened particle; can be converted to a JSON document and back.
 
-    Parameters
-    ----------
-    method, polyhedron, errors, jaccard_distance, loss, bounds, reason
-        As in :class:`regolith_studio.coarsening.result.CoarseningResult`.
+    ``method``, ``polyhedron``, ``errors``, ``jaccard_distance``, ``loss``, ``bounds``, ``reason``: as in
+    :class:`regolith_studio.coarsening.result.CoarseningResult`.
     """
 
     method: str
@@ -95,12 +93,8 @@ def _part_from(document: Mapping[str, Any]) -> ConvexPolyhedron:
 class GalleryStudy:
     """Some particles, each coarsened by every loss.
 
-    Parameters
-    ----------
-    rows, names
-        Labels of the losses, names of the particles.
-    cells
-        By number of row and particle: the polyhedron, or the sentence that says why there is none.
+    ``rows``, ``names``: labels of the losses, names of the particles. ``cells``: by number of row and
+    particle: the polyhedron, or the sentence that says why there is none.
     """
 
     rows: tuple[str, ...]

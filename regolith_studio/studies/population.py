@@ -53,18 +53,11 @@ Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 class FitTask:
     """A model to be fitted and drawn from several times: the argument of :func:`fit_and_draw`.
 
-    Parameters
-    ----------
-    key
-        Of ``MODELS``.
-    options
-        Settings of the model.
-    sample
-        Fitted to.
-    n_draws
-        Of each drawing.
-    seeds
-        Of the drawings.
+    - ``key``: of ``MODELS``.
+    - ``options``: settings of the model.
+    - ``sample``: fitted to.
+    - ``n_draws``: of each drawing.
+    - ``seeds``: of the drawings.
     """
 
     key: str
@@ -175,27 +168,17 @@ MAX_DRAWS = 1000
 class ModelEvaluation:
     """One model over the rounds.
 
-    Parameters
-    ----------
-    key
-        Of ``MODELS``.
-    l_max
-        Degree of its draws.
-    distances
-        To the half that the model has not seen.
-    intervals
-        Of the distances of one round.
-    novelty
-        Median over the first draws of each split of the distance to the nearest measured particle over all
-        rotations, over that among measured ones, shape (splits,).
-    near_parents
-        Share of these draws whose nearest particle is the one that they were made from, shape (splits,).
-    rejected
-        Draws thrown away, as a share of all, shape (rounds,).
-    table
-        Descriptors of the first round's draws, shape (n_draws, keys).
-    criterion
-        Bayes' criterion for 1, 2, ... parts in the first fit of a mixture; else empty.
+    - ``key``: of ``MODELS``.
+    - ``l_max``: degree of its draws.
+    - ``distances``: to the half that the model has not seen.
+    - ``intervals``: of the distances of one round.
+    - ``novelty``: median over the first draws of each split of the distance to the nearest measured particle
+      over all rotations, over that among measured ones, shape (splits,).
+    - ``near_parents``: share of these draws whose nearest particle is the one that they were made from,
+      shape (splits,).
+    - ``rejected``: draws thrown away, as a share of all, shape (rounds,).
+    - ``table``: descriptors of the first round's draws, shape (n_draws, keys).
+    - ``criterion``: bayes' criterion for 1, 2, ... parts in the first fit of a mixture; else empty.
     """
 
     key: str
@@ -213,31 +196,18 @@ class ModelEvaluation:
 class PopulationStudy:
     """Measured against virtual.
 
-    Parameters
-    ----------
-    keys
-        Descriptors, in the order of all tables.
-    l_max
-        Degree of the measured particles, and so of the comparison.
-    unit
-        Of length.
-    measured
-        Descriptors of the sample's particles with all their degrees, shape (n, keys).
-    cut_degree, cut
-        Degree of the paper's model, or the one asked for, and descriptors of the particles cut at it, shape
-        (m, keys).
-    floor
-        PopulationDistances between random halves.
-    models
-        In the order asked for.
-    n_draws
-        Of each round.
-    n_repeats
-        Rounds of each split.
-    seed
-        Of splits and draws.
-    left_out
-        Particles whose series has a negative radius.
+    - ``keys``: descriptors, in the order of all tables.
+    - ``l_max``: degree of the measured particles, and so of the comparison.
+    - ``unit``: of length.
+    - ``measured``: descriptors of the sample's particles with all their degrees, shape (n, keys).
+    - ``cut_degree``, ``cut``: degree of the paper's model, or the one asked for, and descriptors of the
+      particles cut at it, shape (m, keys).
+    - ``floor``: PopulationDistances between random halves.
+    - ``models``: in the order asked for.
+    - ``n_draws``: of each round.
+    - ``n_repeats``: rounds of each split.
+    - ``seed``: of splits and draws.
+    - ``left_out``: particles whose series has a negative radius.
     """
 
     keys: tuple[str, ...]
@@ -279,24 +249,16 @@ def population_study(
     each fit. Yields a :class:`StudyProgress` every 25 particles measured, with the study so far after each
     split, and returns the study.
 
-    Parameters
-    ----------
-    models
-        Keys of ``MODELS``; all if ``None``.
-    l_max
-        Degree of drawn particles and of the cut sample; by default that of each model's settings, and 10.
-        Both are compared with the measured particles with all their degrees.
-    n_draws
-        By default as many as the held-out half has, so that the noise is that of the floor; at most 1,000.
-    settings
-        Settings by model key; by default those of :func:`default_settings`.
-    mapper
-        ``map``, or the ordered lazy map of a process pool.
+    - ``models``: keys of ``MODELS``; all if ``None``.
+    - ``l_max``: degree of drawn particles and of the cut sample; by default that of each model's settings,
+      and 10. Both are compared with the measured particles with all their degrees.
+    - ``n_draws``: by default as many as the held-out half has, so that the noise is that of the floor; at
+      most 1,000.
+    - ``settings``: settings by model key; by default those of :func:`default_settings`.
+    - ``mapper``: ``map``, or the ordered lazy map of a process pool.
 
-    Raises
-    ------
-    InputError
-        If a model, descriptor or the degree is unknown, there are fewer than 20 particles or draws.
+    Raises InputError if a model, descriptor or the degree is unknown, there are fewer than 20 particles or
+    draws.
     """
     chosen = tuple(MODELS) if models is None else tuple(models)
     drawn = default_draws(len(sample)) if n_draws is None else n_draws

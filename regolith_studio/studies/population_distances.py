@@ -31,14 +31,9 @@ MAX_PAIRED = 5
 class PopulationDistances:
     """Distances over rounds (draws from a model fitted to a half, or random halves).
 
-    Parameters
-    ----------
-    wasserstein, kolmogorov
-        Share of the mean, and share of all, shape (rounds, weightings, keys).
-    energy
-        Of pairs of descriptors, number-weighted, shape (rounds, pairs).
-    accuracy
-        Of the classifier, shape (rounds,).
+    - ``wasserstein``, ``kolmogorov``: share of the mean, and share of all, shape (rounds, weightings, keys).
+    - ``energy``: of pairs of descriptors, number-weighted, shape (rounds, pairs).
+    - ``accuracy``: of the classifier, shape (rounds,).
     """
 
     wasserstein: FloatArray
@@ -137,12 +132,8 @@ class SamplingNoise:
 
     Where both have the same source, drawn ones are such a part.
 
-    Parameters
-    ----------
-    mean
-        Of both distances, Wasserstein and Kolmogorov-Smirnov, shape (2, weightings, keys).
-    limit
-        What the largest of all distances, each over its mean, exceeds in 5 % of the partitions.
+    ``mean``: of both distances, Wasserstein and Kolmogorov-Smirnov, shape (2, weightings, keys). ``limit``:
+    what the largest of all distances, each over its mean, exceeds in 5 % of the partitions.
     """
 
     mean: FloatArray
@@ -153,19 +144,12 @@ class SamplingNoise:
 class DistributionComparison:
     """Descriptors of measured and of drawn particles.
 
-    Parameters
-    ----------
-    keys
-        Of the columns.
-    measured, drawn
-        Shape (n, keys), without particles that bound no solid; `measured` is empty where the source of a
-        model holds no particles.
-    cut
-        The measured ones cut at the degree of the draws, where it is lower; else empty.
-    model
-        Key of the model.
-    l_max, sample_l_max
-        Degree of the draws and of the measured particles.
+    - ``keys``: of the columns.
+    - ``measured``, ``drawn``: shape (n, keys), without particles that bound no solid; `measured` is empty
+      where the source of a model holds no particles.
+    - ``cut``: the measured ones cut at the degree of the draws, where it is lower; else empty.
+    - ``model``: key of the model.
+    - ``l_max``, ``sample_l_max``: degree of the draws and of the measured particles.
     """
 
     keys: tuple[str, ...]
@@ -179,10 +163,7 @@ class DistributionComparison:
     def distributions(self, key: str, weighting: str = "number") -> tuple[Distribution | None, Distribution]:
         """One descriptor of the measured, if there are any, and of the drawn particles.
 
-        Parameters
-        ----------
-        weighting
-            ``number``, or ``volume``: each particle counts by its volume.
+        ``weighting``: ``number``, or ``volume``: each particle counts by its volume.
         """
         drawn = self._distribution(self.drawn, key, weighting)
         return (self._distribution(self.measured, key, weighting) if len(self.measured) else None), drawn

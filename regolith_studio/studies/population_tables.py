@@ -40,12 +40,8 @@ N_PAIRED = 3
 class PopulationCurve:
     """One line of a panel.
 
-    Parameters
-    ----------
-    source
-        :data:`MEASURED`, :data:`CUT`, or a key of ``MODELS``.
-    x, y
-        Shape (n,); NaN between separate lines.
+    ``source``: :data:`MEASURED`, :data:`CUT`, or a key of ``MODELS``. ``x``, ``y``: shape (n,); NaN between
+    separate lines.
     """
 
     source: str
@@ -57,10 +53,7 @@ class PopulationCurve:
 class PopulationPanel:
     """Curves over common axes.
 
-    Parameters
-    ----------
-    x, y
-        Keys of descriptors; empty for an axis of another quantity.
+    ``x``, ``y``: keys of descriptors; empty for an axis of another quantity.
     """
 
     x: str

@@ -7,19 +7,11 @@ from dataclasses import dataclass
 class StudyProgress:
     """One step of a study: `done` of `total` pieces of work are finished.
 
-    Parameters
-    ----------
-    done, total
-        Counts of equal pieces of work, 0 <= done <= total.
-    message
-        What was finished last, for a progress bar.
-    partial
-        The study's result over the pieces finished so far, or ``None`` where there is none yet.
+    - ``done``, ``total``: counts of equal pieces of work, 0 <= done <= total.
+    - ``message``: what was finished last, for a progress bar.
+    - ``partial``: the study's result over the pieces finished so far, or ``None`` where there is none yet.
 
-    Raises
-    ------
-    ValueError
-        If the counts are out of order.
+    Raises ValueError if the counts are out of order.
     """
 
     done: int

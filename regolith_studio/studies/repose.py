@@ -60,16 +60,10 @@ CONFIDENCE = 0.95
 class ReposeStudyRun:
     """One run of a study.
 
-    Parameters
-    ----------
-    varied, value
-        What was varied, and to what; a number or a name.
-    seed
-        Of the run.
-    folder
-        Of the run, by name.
-    document
-        Its ``repose.json``.
+    - ``varied``, ``value``: what was varied, and to what; a number or a name.
+    - ``seed``: of the run.
+    - ``folder``: of the run, by name.
+    - ``document``: its ``repose.json``.
     """
 
     varied: str
@@ -188,20 +182,12 @@ INDEPENDENT = 0.02
 class ResponseSurface:
     """A fitted polynomial in factors that are centred and divided by their ranges.
 
-    Parameters
-    ----------
-    factors
-        Names.
-    centre, width
-        Mean and range of each factor, shape (k,).
-    powers
-        Indices of the factors that each term multiplies; none for the constant.
-    coefficients, covariance
-        Of the terms, shapes (p,) and (p, p).
-    degrees_of_freedom
-        Results less terms.
-    residual_deviation
-        Standard deviation of the results about the surface.
+    - ``factors``: names.
+    - ``centre``, ``width``: mean and range of each factor, shape (k,).
+    - ``powers``: indices of the factors that each term multiplies; none for the constant.
+    - ``coefficients``, ``covariance``: of the terms, shapes (p,) and (p, p).
+    - ``degrees_of_freedom``: results less terms.
+    - ``residual_deviation``: standard deviation of the results about the surface.
     """
 
     factors: tuple[str, ...]
@@ -236,15 +222,10 @@ class ResponseSurface:
 def fit_response_surface(factors: Sequence[str], values: FloatArray, results: FloatArray) -> ResponseSurface:
     """Fit a surface.
 
-    Parameters
-    ----------
-    values, results
-        Of the factors, shape (n, k), and what they gave, shape (n,).
+    ``values``, ``results``: of the factors, shape (n, k), and what they gave, shape (n,).
 
-    Raises
-    ------
-    InputError
-        If there are too few different points, or the factors do not vary independently of each other.
+    Raises InputError if there are too few different points, or the factors do not vary independently of each
+    other.
     """
     n_points, n_linear = len(np.unique(values, axis=0)), len(factors) + 1
     if n_points <= n_linear:
@@ -290,10 +271,7 @@ class ReposeSurface:
 def shape_statistics(datasets: Sequence[Dataset], keys: Sequence[str]) -> FloatArray:
     """Weighted means of dimensionless descriptors over the simulated shapes of each dataset, shape (n, k).
 
-    Raises
-    ------
-    InputError
-        If a key is no dimensionless descriptor.
+    Raises InputError if a key is no dimensionless descriptor.
     """
     known = [each.key for each in CATALOGUE.values() if each.dimension == 0]
     for key in keys:
@@ -315,15 +293,9 @@ def fit_repose_surface(
 
     Heaps of one dataset share its shapes, so that datasets, not heaps, are the independent results.
 
-    Parameters
-    ----------
-    statistics
-        Of each value of the study, shape (k,).
+    ``statistics``: of each value of the study, shape (k,).
 
-    Raises
-    ------
-    InputError
-        If the runs do not suffice.
+    Raises InputError if the runs do not suffice.
     """
     angles = {value: study.angles(value) for value in study.values}
     piles = [value for value in study.values if angles[value]]

@@ -33,20 +33,12 @@ GAIN = 1e-3
 class Sweep:
     """What is varied.
 
-    Parameters
-    ----------
-    key
-        In file names and commands.
-    title
-        On screen.
-    asks
-        What the values are.
-    values
-        Those that are proposed.
-    rows
-        The rows of the study, from one row and the values.
-    table
-        What was found.
+    - ``key``: in file names and commands.
+    - ``title``: on screen.
+    - ``asks``: what the values are.
+    - ``values``: those that are proposed.
+    - ``rows``: the rows of the study, from one row and the values.
+    - ``table``: what was found.
     """
 
     key: str
@@ -64,10 +56,7 @@ class Sweep:
 def parse_values(text: str) -> tuple[float, ...]:
     """Numbers with commas between them.
 
-    Raises
-    ------
-    InputError
-        If a word is no number, or there is none.
+    Raises InputError if a word is no number, or there is none.
     """
     try:
         found = tuple(float(word) for word in text.split(",") if word.strip())

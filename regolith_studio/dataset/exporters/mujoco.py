@@ -40,14 +40,9 @@ Contacts of MuJoCo are soft constraints with Coulomb friction, not Hertz, Mindli
 class MjcfShape:
     """A shape of volume 1 about its centre of mass, as convex parts.
 
-    Parameters
-    ----------
-    name
-        Unique.
-    parts
-        Closed convex meshes.
-    inertia
-        Of the union at density 1, shape (3, 3).
+    - ``name``: unique.
+    - ``parts``: closed convex meshes.
+    - ``inertia``: of the union at density 1, shape (3, 3).
     """
 
     name: str
@@ -78,10 +73,7 @@ def mjcf_model(
 ) -> tuple[str, str]:
     """An MJCF model of particles on a plate, and what its reader should know.
 
-    Raises
-    ------
-    DatasetError
-        If the particles are too small for MuJoCo.
+    Raises DatasetError if the particles are too small for MuJoCo.
     """
     units = _units(shapes, bodies, contact.density)
     density = contact.density * units.per_kilogram / units.per_metre**3
@@ -114,13 +106,7 @@ def mjcf_model(
 
 
 def _units(shapes: Sequence[MjcfShape], bodies: PackedParticles, density: float) -> _Units:
-    """The first units in which MuJoCo takes the smallest moment of inertia.
-
-    Raises
-    ------
-    DatasetError
-        If there are none.
-    """
+    """The first units in which MuJoCo takes the smallest moment of inertia."""
     least = np.array([np.linalg.eigvalsh(each.inertia)[0] for each in shapes])
     smallest = float((least[bodies.class_index] * density * bodies.scale**5).min())
     for units in UNITS:

@@ -17,10 +17,7 @@ DEFAULT_ENGINE = "mujoco"
 def engine_named(key: str) -> Engine:
     """The engine of this key.
 
-    Raises
-    ------
-    InputError
-        If there is none.
+    Raises InputError if there is none.
     """
     if key not in ENGINES:
         raise InputError(f"There is no engine {key!r}; there are {', '.join(ENGINES)}.")

@@ -16,12 +16,7 @@ BASE_SHARE = 0.01
 class Discs:
     """Particles projected on a vertical plane, as discs.
 
-    Parameters
-    ----------
-    u, z
-        Centres along the section and above the base, shape (n,).
-    radius
-        Shape (n,).
+    ``u``, ``z``: centres along the section and above the base, shape (n,). ``radius``: shape (n,).
     """
 
     u: FloatArray
@@ -33,17 +28,11 @@ class Discs:
 class Profile:
     """Surface of the pile on equally spaced vertical lines.
 
-    Parameters
-    ----------
-    u
-        Places of the lines, ascending, shape (m,).
-    raw
-        Top of the connected column above the base on each, 0 where there is none, shape (m,).
-    height
-        `raw` after the rolling median, shape (m,).
-    first, last
-        The heap without strays: the lines from `first` to `last` (inclusive) about the highest point
-        on which there is any particle.
+    - ``u``: places of the lines, ascending, shape (m,).
+    - ``raw``: top of the connected column above the base on each, 0 where there is none, shape (m,).
+    - ``height``: `raw` after the rolling median, shape (m,).
+    - ``first``, ``last``: the heap without strays: the lines from `first` to `last` (inclusive) about the
+      highest point on which there is any particle.
     """
 
     u: FloatArray

@@ -35,16 +35,11 @@ class Line:
 class AsymmetricFit:
     """Two independent lines.
 
-    Parameters
-    ----------
-    left, right
-        The flanks.
-    break_point
-        Where the points are divided: half-way between the last of the left and the first of the right.
-    apex
-        (u, z) where the lines meet.
-    r_squared
-        Share of the points' variance that the two lines explain.
+    - ``left``, ``right``: the flanks.
+    - ``break_point``: where the points are divided: half-way between the last of the left and the first of
+      the right.
+    - ``apex``: (u, z) where the lines meet.
+    - ``r_squared``: share of the points' variance that the two lines explain.
     """
 
     left: Line
@@ -63,14 +58,9 @@ class AsymmetricFit:
 class SymmetricFit:
     """z = apex_z - slope |u - apex_u|: one angle for both flanks.
 
-    Parameters
-    ----------
-    slope
-        Positive for a pile.
-    apex
-        (u, z).
-    r_squared
-        Share of the points' variance that is explained.
+    - ``slope``: positive for a pile.
+    - ``apex``: (u, z).
+    - ``r_squared``: share of the points' variance that is explained.
     """
 
     slope: float
@@ -86,17 +76,9 @@ class SymmetricFit:
 def fit_asymmetric(u: FloatArray, z: FloatArray, min_points: int) -> AsymmetricFit | None:
     """Two lines with the break point at the least sum of squared residuals, tried exhaustively.
 
-    Parameters
-    ----------
-    u, z
-        Surface points with ascending u, shape (m,).
-    min_points
-        Points that each flank keeps.
+    ``u``, ``z``: surface points with ascending u, shape (m,). ``min_points``: points that each flank keeps.
 
-    Returns
-    -------
-    AsymmetricFit
-        ``None`` where the points are too few or the lines do not rise and fall.
+    Returns ``None`` where the points are too few or the lines do not rise and fall.
     """
     breaks = np.arange(min_points, len(u) - min_points + 1)
     if not len(breaks):
@@ -120,10 +102,7 @@ def fit_asymmetric(u: FloatArray, z: FloatArray, min_points: int) -> AsymmetricF
 def fit_symmetric(u: FloatArray, z: FloatArray, min_points: int) -> SymmetricFit | None:
     """One angle for both flanks, the apex position varied to minimise the residual.
 
-    Returns
-    -------
-    SymmetricFit
-        ``None`` where the points are too few or form no roof.
+    Returns ``None`` where the points are too few or form no roof.
     """
     if len(u) < 2 * min_points:
         return None
@@ -219,12 +198,7 @@ def silhouette_deficit(u: FloatArray, fit: AsymmetricFit, mean_diameter: float) 
     dense random packings (15 to 45 degrees) the bias without this correction is -0.7 to -1.0 degree for 1,000
     grains and -0.3 to -0.5 for 4,000; with it -0.3 and -0.15. For the paper's 378,000 grains it is below 0.1.
 
-    Parameters
-    ----------
-    u
-        Places, shape (m,).
-    fit
-        Apex and flanks, as first estimated.
+    ``u``: places, shape (m,). ``fit``: apex and flanks, as first estimated.
     """
     slope = np.where(u < fit.apex[0], fit.left.slope, -fit.right.slope)
     away = np.maximum(np.abs(u - fit.apex[0]) / mean_diameter, 0.5)
@@ -242,23 +216,14 @@ SELECTIONS = 5
 class Section:
     """The evaluation of one vertical plane.
 
-    Parameters
-    ----------
-    azimuth
-        Degrees from the x axis: 0 is x-z, 90 is y-z.
-    profile
-        The surface.
-    used
-        Whether a point is within the regression range, shape (m,).
-    low, high
-        The cuts, as heights above the base.
-    asymmetric, symmetric
-        The fitted models.
-    uncorrected
-        Asymmetric angle in degrees before the correction for particle size.
-    curvature
-        Of the left and the right flank: how much steeper it is at its foot than at its top, in units of its
-        slope; 0 for a straight one.
+    - ``azimuth``: degrees from the x axis: 0 is x-z, 90 is y-z.
+    - ``profile``: the surface.
+    - ``used``: whether a point is within the regression range, shape (m,).
+    - ``low``, ``high``: the cuts, as heights above the base.
+    - ``asymmetric``, ``symmetric``: the fitted models.
+    - ``uncorrected``: asymmetric angle in degrees before the correction for particle size.
+    - ``curvature``: of the left and the right flank: how much steeper it is at its foot than at its top, in
+      units of its slope; 0 for a straight one.
     """
 
     azimuth: float
@@ -310,19 +275,10 @@ Status = Literal[
 class NotAPileError(InputError):
     """The particles form no pile whose angle could be measured.
 
-    Parameters
-    ----------
-    sentence
-        Reason, for the user.
-    status
-        Reason, for programs and tables.
+    ``sentence``: reason, for the user. ``status``: reason, for programs and tables.
 
-    Attributes
-    ----------
-    base
-        Level of the plate.
-    profiles, sections
-        The surface at each azimuth, and what could be fitted: as far as the evaluation came.
+    ``base``: level of the plate. ``profiles``, ``sections``: the surface at each azimuth, and what could be
+    fitted: as far as the evaluation came.
     """
 
     def __init__(self, sentence: str, status: Status = "no flanks") -> None:
@@ -343,15 +299,10 @@ def evaluate_section(
 ) -> Section:
     """Cut the surface and fit both models.
 
-    Parameters
-    ----------
-    azimuth
-        In degrees.
+    ``azimuth``: in degrees.
 
-    Raises
-    ------
-    NotAPileError
-        If the particles form a layer, a standing column, or a surface without two straight flanks.
+    Raises NotAPileError if the particles form a layer, a standing column, or a surface without two straight
+    flanks.
     """
     _check_shape(profile, mean_diameter, settings)
     low = max(settings.cut_bottom * profile.top, settings.toe * mean_diameter)

@@ -32,14 +32,9 @@ MEASUREMENTS: Mapping[str, Measurement] = {**QUICK, **LONG}
 class Certificate:
     """What was measured of one version of an engine.
 
-    Parameters
-    ----------
-    engine, version
-        Key, and version that was installed.
-    lines
-        In the order in which they were measured.
-    left_out
-        Keys of lines that were not measured.
+    - ``engine``, ``version``: key, and version that was installed.
+    - ``lines``: in the order in which they were measured.
+    - ``left_out``: keys of lines that were not measured.
     """
 
     engine: str
@@ -61,12 +56,8 @@ class Certificate:
 def verifiable_engine(key: str) -> VerifiableEngine:
     """The engine of this key, if it can be verified.
 
-    Raises
-    ------
-    InputError
-        If there is none, or bodies cannot be placed in it one by one.
-    MissingRequirement
-        If it is not installed.
+    Raises InputError if there is none, or bodies cannot be placed in it one by one. Raises
+    MissingRequirement if it is not installed.
     """
     stepped = [each.key for each in ENGINES.values() if isinstance(each, VerifiableEngine)]
     engine = ENGINES.get(key)

@@ -15,20 +15,12 @@ from regolith_studio.dem.lifting_cylinder import Solver
 class MeasuredLine:
     """One measured line.
 
-    Parameters
-    ----------
-    key, what
-        What is measured, for programs and in words.
-    value, unit
-        What was found; ``None`` where nothing could be measured.
-    band
-        Where the value passes, in words.
-    passed
-        Whether it lies there.
-    note
-        What else the value needs to be understood.
-    seconds
-        By the clock.
+    - ``key``, ``what``: what is measured, for programs and in words.
+    - ``value``, ``unit``: what was found; ``None`` where nothing could be measured.
+    - ``band``: where the value passes, in words.
+    - ``passed``: whether it lies there.
+    - ``note``: what else the value needs to be understood.
+    - ``seconds``: by the clock.
     """
 
     key: str

@@ -44,17 +44,10 @@ def training_document(training: TrainingSet) -> dict[str, Any]:
 def training_from(document: Mapping[str, Any], name: str) -> TrainingSet:
     """The training set that :func:`training_document` has written.
 
-    Parameters
-    ----------
-    name
-        Of the file, for messages.
+    ``name``: of the file, for messages.
 
-    Raises
-    ------
-    FileError
-        If it holds no training set, or one with other features than its settings ask for.
-    InputError
-        If a setting is out of its range, or a class is not painted.
+    Raises FileError if it holds no training set, or one with other features than its settings ask for.
+    Raises InputError if a setting is out of its range, or a class is not painted.
     """
     if document.get("format") != FORMAT:
         raise FileError(f"{name} is no classifier: it does not say {FORMAT!r}.")
@@ -112,17 +105,10 @@ def objects_document(training: ObjectTraining) -> dict[str, Any]:
 def objects_from(document: Mapping[str, Any], name: str) -> ObjectTraining:
     """The examples that :func:`objects_document` has written.
 
-    Parameters
-    ----------
-    name
-        Of the file, for messages.
+    ``name``: of the file, for messages.
 
-    Raises
-    ------
-    FileError
-        If it holds no examples, or such with other descriptors.
-    InputError
-        If fewer than two classes have an example.
+    Raises FileError if it holds no examples, or such with other descriptors. Raises InputError if fewer than
+    two classes have an example.
     """
     if document.get("format") != OBJECT_FORMAT:
         raise FileError(f"{name} is no object classifier: it does not say {OBJECT_FORMAT!r}.")

@@ -40,11 +40,8 @@ def noise_of(slices: NDArray[Any]) -> float:
 def denoised(values: NDArray[Any], settings: DenoiseSettings, noise: float | None = None) -> NDArray[Any]:
     """The grey values without noise, in their own type; shape (nx, ny, nz).
 
-    Parameters
-    ----------
-    noise
-        Its standard deviation for non-local means; by default :func:`noise_of` these values.
-        To be given where slabs of one volume must agree.
+    ``noise``: its standard deviation for non-local means; by default :func:`noise_of` these values. To be
+    given where slabs of one volume must agree.
     """
     match settings.method:
         case "gaussian":
@@ -95,10 +92,7 @@ def denoised_volume(
 ) -> Generator[tuple[int, int], None, tuple[Volume, Histogram, int]]:
     """Grey values without noise (probabilities as they are), their histogram, and how many are not finite.
 
-    Parameters
-    ----------
-    padding
-        What the histogram does not count.
+    ``padding``: what the histogram does not count.
     """
     given = SharedArray(source.array)
     ranges = slab_ranges(source.shape)

@@ -33,27 +33,18 @@ _watershed: Any = watershed
 class LabelEdit:
     """One correction.
 
-    Parameters
-    ----------
-    kind
-        ``merge`` gives all grains at the points the label of the first; ``delete`` removes those at the
-        points; ``seeds`` splits the grain that holds all points into one a point, by a watershed of the
-        distance to its surface; ``cut`` splits the grain that the line between two points crosses longest, by
-        the plane through the line and along `axis`; ``fill`` gives the grains at the points the free voxels
-        that they enclose in a slice across `axis`; ``paint`` gives all voxels within `radius` of the line
-        through the points the label at its first point, or a new one where no grain is there; ``erase``
-        frees them.
-    points
-        Voxels along x, y, z.
-    axis
-        Direction across the slice that was looked at.
-    radius
-        Of a brush, in voxels.
+    - ``kind``: ``merge`` gives all grains at the points the label of the first; ``delete`` removes those at
+      the points; ``seeds`` splits the grain that holds all points into one a point, by a watershed of the
+      distance to its surface; ``cut`` splits the grain that the line between two points crosses longest, by
+      the plane through the line and along `axis`; ``fill`` gives the grains at the points the free voxels
+      that they enclose in a slice across `axis`; ``paint`` gives all voxels within `radius` of the line
+      through the points the label at its first point, or a new one where no grain is there; ``erase`` frees
+      them.
+    - ``points``: voxels along x, y, z.
+    - ``axis``: direction across the slice that was looked at.
+    - ``radius``: of a brush, in voxels.
 
-    Raises
-    ------
-    InputError
-        If the kind is another, there are too few points, or the radius is out of its range.
+    Raises InputError if the kind is another, there are too few points, or the radius is out of its range.
     """
 
     kind: EditKind
@@ -81,17 +72,11 @@ def apply_edits(
     The first part of a split grain keeps its label, further ones get new labels above the highest; labels of
     grains that are merged or deleted are left out.
 
-    Parameters
-    ----------
-    numbers
-        Labels, 0 between grains, shape (nx, ny, nz).
-    edges
-        Of a voxel along x, y and z, in any unit, shape (3,).
+    ``numbers``: labels, 0 between grains, shape (nx, ny, nz). ``edges``: of a voxel along x, y and z, in any
+    unit, shape (3,).
 
-    Raises
-    ------
-    InputError
-        If an edit does not find its grains: it was made on another scan or with other settings.
+    Raises InputError if an edit does not find its grains: it was made on another scan or with other
+    settings.
     """
     if not edits:
         return
@@ -261,10 +246,7 @@ def edits_document(edits: Sequence[LabelEdit]) -> list[dict[str, Any]]:
 def edits_from(document: Any) -> tuple[LabelEdit, ...]:
     """The edits that :func:`edits_document` has written.
 
-    Raises
-    ------
-    InputError
-        If it is no list of edits.
+    Raises InputError if it is no list of edits.
     """
     try:
         return tuple(

@@ -50,12 +50,7 @@ _distance: Any = ndimage.distance_transform_edt
 class ObjectTable:
     """The objects of a segmentation with their descriptors.
 
-    Parameters
-    ----------
-    table
-        Labels, voxels and boxes, n of them.
-    vectors
-        Of :data:`OBJECT_FEATURES`, shape (n, 9).
+    ``table``: labels, voxels and boxes, n of them. ``vectors``: of :data:`OBJECT_FEATURES`, shape (n, 9).
     """
 
     table: LabelTable
@@ -70,28 +65,16 @@ class ObjectTable:
 class ObjectTraining:
     """Examples with their descriptors: all that an object classifier is trained from.
 
-    Parameters
-    ----------
-    positions
-        A voxel in each example, along x, y, z, shape (n, 3).
-    classes
-        Index into :data:`OBJECT_CLASSES`, shape (n,).
-    vectors
-        Descriptors of each example, shape (n, 9).
-    centre, spread
-        Median of each descriptor over all objects of the scan, and half the range of its middle
-        68 %, shape (9,).
-    voxel_size
-        Edges of a voxel along x, y and z, in micrometres, shape (3,).
-    actions
-        What is done with the objects of each class.
-    scan
-        SHA-256 of the scan, or empty.
+    - ``positions``: a voxel in each example, along x, y, z, shape (n, 3).
+    - ``classes``: index into :data:`OBJECT_CLASSES`, shape (n,).
+    - ``vectors``: descriptors of each example, shape (n, 9).
+    - ``centre``, ``spread``: median of each descriptor over all objects of the scan, and half the range of
+      its middle 68 %, shape (9,).
+    - ``voxel_size``: edges of a voxel along x, y and z, in micrometres, shape (3,).
+    - ``actions``: what is done with the objects of each class.
+    - ``scan``: SHA-256 of the scan, or empty.
 
-    Raises
-    ------
-    InputError
-        If fewer than two classes have an example, or an action is another.
+    Raises InputError if fewer than two classes have an example, or an action is another.
     """
 
     positions: IntArray
@@ -131,10 +114,7 @@ class ObjectTraining:
 def describe_objects(labels: Volume, grey: Volume) -> Generator[tuple[int, int], None, ObjectTable]:
     """Measure each object; tells how many are done, of how many, and returns the table.
 
-    Raises
-    ------
-    InputError
-        If there is no label.
+    Raises InputError if there is no label.
     """
     table = label_table(labels)
     whole = box_between((0, 0, 0), labels.shape)
@@ -153,12 +133,8 @@ def object_features(crop: GrainCrop, edges: FloatArray) -> FloatArray:
     Area and hull are those of its contour by marching cubes, whose area is up to 9 % too large, so that the
     sphericity of a sphere is below 1.
 
-    Parameters
-    ----------
-    crop
-        What lies about it, with a margin of a voxel inside of the volume.
-    edges
-        Of a voxel along x, y and z, in micrometres, shape (3,).
+    ``crop``: what lies about it, with a margin of a voxel inside of the volume. ``edges``: of a voxel along
+    x, y and z, in micrometres, shape (3,).
     """
     own = np.pad(crop.own, 1)
     volume = float(np.count_nonzero(own)) * float(np.prod(edges))
@@ -208,10 +184,7 @@ def train_on_examples(
 ) -> ObjectTraining:
     """The training set of examples: a voxel in each, and its class. The last example of an object counts.
 
-    Raises
-    ------
-    InputError
-        If a voxel lies in no object, or as :class:`ObjectTraining`.
+    Raises InputError if a voxel lies in no object, or as :class:`ObjectTraining`.
     """
     chosen: dict[int, tuple[tuple[int, int, int], int]] = {}
     for position, kind in examples:
@@ -257,10 +230,7 @@ def _standardised(training: ObjectTraining, vectors: FloatArray) -> FloatArray:
 def classify_objects(training: ObjectTraining, vectors: FloatArray) -> IntArray:
     """Class of each object, index into :data:`OBJECT_CLASSES`, for descriptors of shape (n, 9).
 
-    Raises
-    ------
-    MissingRequirement
-        If scikit-learn is not installed.
+    Raises MissingRequirement if scikit-learn is not installed.
     """
     return np.asarray(_trained(training).predict(_standardised(training, vectors)), dtype=np.int64)
 
@@ -277,23 +247,14 @@ def sort_objects(
 
     The first part of an object that is split keeps its label, further ones get new labels above the highest.
 
-    Parameters
-    ----------
-    numbers
-        Labels, 0 between objects, shape (nx, ny, nz).
-    objects
-        Of these labels.
-    edges
-        Of a voxel along x, y and z, in micrometres, shape (3,).
-    splitting
-        Of the segmentation, whose h is halved until an object falls apart (:func:`split_again`).
-    min_voxels
-        Smallest part.
+    - ``numbers``: labels, 0 between objects, shape (nx, ny, nz).
+    - ``objects``: of these labels.
+    - ``edges``: of a voxel along x, y and z, in micrometres, shape (3,).
+    - ``splitting``: of the segmentation, whose h is halved until an object falls apart
+      (:func:`split_again`).
+    - ``min_voxels``: smallest part.
 
-    Raises
-    ------
-    InputError
-        If the voxels have another size than those of the examples.
+    Raises InputError if the voxels have another size than those of the examples.
     """
     if not np.allclose(edges, training.voxel_size, rtol=0.02):
         own, other = (" x ".join(f"{each:g}" for each in sizes) for sizes in (training.voxel_size, edges))
@@ -327,12 +288,8 @@ def split_again(
 
     Smaller parts join the nearest of these. Where no h does, the object stays whole.
 
-    Parameters
-    ----------
-    mask, box
-        The object in its box, and the box in a volume of `shape`.
-    settings
-        With which it was found.
+    ``mask``, ``box``: the object in its box, and the box in a volume of `shape`. ``settings``: with which it
+    was found.
     """
     x, y, z = ((side.start == 0, side.stop == n) for side, n in zip(box, shape, strict=True))
     own, h, relative = np.ascontiguousarray(mask), settings.h_maxima, settings.relative

@@ -62,19 +62,13 @@ USUAL_CLASSES = (PixelClass("background", False), PixelClass("grain", True))
 class ClassifierSettings:
     """How a classifier of voxels is made.
 
-    Parameters
-    ----------
-    features
-        What it sees of a voxel.
-    kind
-        ``network`` has one layer of `hidden` units and can tell apart classes of several brightnesses;
-        ``logistic`` regression needs the fewest painted voxels and draws straight limits between classes.
-    hidden
-        Hidden units of the network.
-    regularisation
-        Weight of the penalty on the square of the coefficients.
-    seed
-        Of the first coefficients of the network, and of the choice among too many painted voxels.
+    - ``features``: what it sees of a voxel.
+    - ``kind``: ``network`` has one layer of `hidden` units and can tell apart classes of several
+      brightnesses; ``logistic`` regression needs the fewest painted voxels and draws straight limits between
+      classes.
+    - ``hidden``: hidden units of the network.
+    - ``regularisation``: weight of the penalty on the square of the coefficients.
+    - ``seed``: of the first coefficients of the network, and of the choice among too many painted voxels.
     """
 
     features: FeatureSettings = field(default_factory=FeatureSettings)
@@ -98,27 +92,16 @@ class ClassifierSettings:
 class TrainingSet:
     """Painted voxels with their features: all that a classifier is trained from.
 
-    Parameters
-    ----------
-    positions
-        Voxels along x, y, z, shape (n, 3).
-    labels
-        Class of each, from 0, shape (n,).
-    vectors
-        Their features, shape (n, n_features).
-    classes
-        What the labels mean.
-    voxel_size
-        Edges of a voxel along x, y and z, in micrometres, shape (3,).
-    scan
-        SHA-256 of the scan, or empty.
-    settings
-        Of the features and of the classifier.
+    - ``positions``: voxels along x, y, z, shape (n, 3).
+    - ``labels``: class of each, from 0, shape (n,).
+    - ``vectors``: their features, shape (n, n_features).
+    - ``classes``: what the labels mean.
+    - ``voxel_size``: edges of a voxel along x, y and z, in micrometres, shape (3,).
+    - ``scan``: SHA-256 of the scan, or empty.
+    - ``settings``: of the features and of the classifier.
 
-    Raises
-    ------
-    InputError
-        If fewer than two classes are painted, or none of those that are grains or of those that are not.
+    Raises InputError if fewer than two classes are painted, or none of those that are grains or of those
+    that are not.
     """
 
     positions: IntArray
@@ -171,17 +154,10 @@ def paint_from_labels(
 ) -> TrainingSet:
     """The training set of a volume of painted labels, as ilastik and label editors keep them.
 
-    Parameters
-    ----------
-    painted
-        0 where nothing is painted, 1 for the first of `classes`, and so on.
-    scan
-        SHA-256 of the scan.
+    ``painted``: 0 where nothing is painted, 1 for the first of `classes`, and so on. ``scan``: SHA-256 of
+    the scan.
 
-    Raises
-    ------
-    InputError
-        If the two volumes differ in size, or as :class:`TrainingSet`.
+    Raises InputError if the two volumes differ in size, or as :class:`TrainingSet`.
     """
     settings = settings or ClassifierSettings()
     positions, labels = painted_voxels(painted, source, len(classes), settings.seed)
@@ -197,10 +173,7 @@ def painted_voxels(
 
     At most :data:`MAX_PER_CLASS` of each class, drawn at random where there are more.
 
-    Raises
-    ------
-    InputError
-        If it differs from the scan in size, or holds more classes.
+    Raises InputError if it differs from the scan in size, or holds more classes.
     """
     if tuple(painted.shape) != tuple(scan.shape):
         raise InputError(
@@ -224,17 +197,10 @@ def painted_voxels(
 class PaintedLabels:
     """The painted voxels of a training set as a volume of labels, read slab by slab: 1 for the first class.
 
-    Parameters
-    ----------
-    training
-        Holds the painted voxels.
-    scan
-        The volume that they were painted on.
+    ``training``: holds the painted voxels. ``scan``: the volume that they were painted on.
 
-    Raises
-    ------
-    InputError
-        If the volume has voxels of another size than those that were painted, or ends before them.
+    Raises InputError if the volume has voxels of another size than those that were painted, or ends before
+    them.
     """
 
     training: TrainingSet
@@ -297,16 +263,10 @@ def _at_most(labels: IntArray, seed: int) -> IntArray:
 class PixelClassifier:
     """A trained classifier.
 
-    Parameters
-    ----------
-    pipeline
-        Of scikit-learn.
-    painted
-        The classes that were painted, in the order of the pipeline's probabilities.
-    voxel_size
-        That it was trained at, in micrometres, shape (3,).
-    features
-        What it sees of a voxel.
+    - ``pipeline``: of scikit-learn.
+    - ``painted``: the classes that were painted, in the order of the pipeline's probabilities.
+    - ``voxel_size``: that it was trained at, in micrometres, shape (3,).
+    - ``features``: what it sees of a voxel.
     """
 
     pipeline: Any
@@ -332,10 +292,7 @@ def train(training: TrainingSet) -> PixelClassifier:
 
     Each class weighs the same, however much of it is painted.
 
-    Raises
-    ------
-    MissingRequirement
-        If scikit-learn is not installed.
+    Raises MissingRequirement if scikit-learn is not installed.
     """
     painted, labels, counts = np.unique(training.labels, return_inverse=True, return_counts=True)
     weights = len(labels) / (len(painted) * counts[labels])
@@ -388,17 +345,10 @@ def probability_map(
 ) -> Generator[tuple[int, int], None, Volume]:
     """Probability of each voxel to be grain, 0 to 255; tells how many of how many slabs are done.
 
-    Parameters
-    ----------
-    scratch
-        Slabs that its checkpoint holds, if it has one, are taken from there; others are added to it.
-    run
-        Applies the classifier to slabs.
+    ``scratch``: slabs that its checkpoint holds, if it has one, are taken from there; others are added to
+    it. ``run``: applies the classifier to slabs.
 
-    Raises
-    ------
-    InputError
-        If the volume has voxels of another size than the classifier was trained at.
+    Raises InputError if the volume has voxels of another size than the classifier was trained at.
     """
     check_voxel_size(classifier.voxel_size, source)
     found = SharedArray(scratch.zeros(source.shape, np.uint8))
@@ -447,12 +397,7 @@ def slab_probability(
 
     Voxels that hold no finite number have probability 0.
 
-    Parameters
-    ----------
-    slab
-        With the margin of the classifier's features.
-    shape
-        Of the volume.
+    ``slab``: with the margin of the classifier's features. ``shape``: of the volume.
     """
     nx, ny, _ = shape
     start = slab.first - slab.inner.start

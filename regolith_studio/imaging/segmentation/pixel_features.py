@@ -35,15 +35,10 @@ _CELL = 64
 class FeatureSettings:
     """Which features a voxel has.
 
-    Parameters
-    ----------
-    sigmas
-        Standard deviations of the Gaussians in voxels, ascending.
-    planar
-        Filter within slices along z only (2-D), in place of all directions (3-D).
-    hessian
-        Whether the eigenvalues of the second derivatives are features: curved and flat surfaces, necks and
-        thin plates differ in them.
+    - ``sigmas``: standard deviations of the Gaussians in voxels, ascending.
+    - ``planar``: filter within slices along z only (2-D), in place of all directions (3-D).
+    - ``hessian``: whether the eigenvalues of the second derivatives are features: curved and flat surfaces,
+      necks and thin plates differ in them.
     """
 
     sigmas: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
@@ -88,20 +83,12 @@ def block_features(
 
     Beyond the border of the volume its outermost voxels are continued. What is no finite number counts as 0.
 
-    Parameters
-    ----------
-    values, outer
-        The grey values about the box, and where they lie: with a margin of
-        :attr:`FeatureSettings.margin` voxels where the volume has them.
-    shape
-        Voxels of the volume along x, y and z.
-    step
-        Of every how many voxels of the box along x, y and z features are taken.
+    - ``values``, ``outer``: the grey values about the box, and where they lie: with a margin of
+      :attr:`FeatureSettings.margin` voxels where the volume has them.
+    - ``shape``: voxels of the volume along x, y and z.
+    - ``step``: of every how many voxels of the box along x, y and z features are taken.
 
-    Returns
-    -------
-    numpy.ndarray
-        Shape (nx, ny, nz, n_features).
+    Returns shape (nx, ny, nz, n_features).
     """
     smooth, gradients, curvatures = [], [], []
     for sigma in settings.sigmas:
@@ -131,15 +118,9 @@ def features_in(
 def features_at(source: SliceSource, positions: IntArray, settings: FeatureSettings) -> FloatBlock:
     """Features of scattered voxels, shape (n, n_features).
 
-    Parameters
-    ----------
-    positions
-        Voxels along x, y, z, shape (n, 3).
+    ``positions``: voxels along x, y, z, shape (n, 3).
 
-    Raises
-    ------
-    InputError
-        If a voxel is not in the volume.
+    Raises InputError if a voxel is not in the volume.
     """
     if len(positions) and not ((positions >= 0) & (positions < source.shape)).all():
         raise InputError(f"Painted voxels lie outside of {source.name} of {source.shape} voxels.")

@@ -31,15 +31,10 @@ OUTSIDE = -1
 class ScanOutside:
     """What lies outside of the circle.
 
-    Parameters
-    ----------
-    value
-        The grey value there; NaN for no number.
-    share
-        Share of the voxels that lie there.
-    columns
-        Columns of voxels along z that lie there, shape (nx, ny). The value within the others is a grey value
-        as any.
+    - ``value``: the grey value there; NaN for no number.
+    - ``share``: share of the voxels that lie there.
+    - ``columns``: columns of voxels along z that lie there, shape (nx, ny). The value within the others is a
+      grey value as any.
     """
 
     value: float
@@ -82,16 +77,10 @@ class Padding:
 def find_outside(volume: SliceSource, choice: str = AUTO) -> ScanOutside | None:
     """What lies outside of the scanner's circle, if anything.
 
-    Parameters
-    ----------
-    choice
-        ``auto`` for a value that fills the corners of the slices and is not found in their middle, ``none``,
-        or the value: a number, or ``nan``.
+    ``choice``: ``auto`` for a value that fills the corners of the slices and is not found in their middle,
+    ``none``, or the value: a number, or ``nan``.
 
-    Raises
-    ------
-    InputError
-        If the volume has no column of voxels of the value.
+    Raises InputError if the volume has no column of voxels of the value.
     """
     if choice == NONE or volume.kind != "grey":
         return None
@@ -159,13 +148,7 @@ def background_filled(
 
 
 def _background(inside: NDArray[Any], threshold: ThresholdSettings, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """The values of voxels that are no grain; all where they are too uniform for a threshold.
-
-    Raises
-    ------
-    InputError
-        If there is no value.
-    """
+    """The values of voxels that are no grain; all where they are too uniform for a threshold."""
     seen = histogram(inside)
     try:
         level = level_of(seen, threshold, dtype)

@@ -71,15 +71,10 @@ from regolith_studio.messages import N_, Message, Number
 class SegmentationSettings:
     """The recipe from grey values to labels.
 
-    Parameters
-    ----------
-    classifier
-        Turns the grey values into the probability of a voxel to be grain, which `threshold` then takes;
-        without one the threshold takes the volume as it is.
-    objects
-        Says which of the grains that were found are kept, split again or dropped.
-    edits
-        Corrections by hand, which come last.
+    - ``classifier``: turns the grey values into the probability of a voxel to be grain, which `threshold`
+      then takes; without one the threshold takes the volume as it is.
+    - ``objects``: says which of the grains that were found are kept, split again or dropped.
+    - ``edits``: corrections by hand, which come last.
     """
 
     denoise: DenoiseSettings = field(default_factory=DenoiseSettings)
@@ -117,26 +112,15 @@ class SegmentationProgress:
 class Segmentation:
     """What came out of a volume of grey values.
 
-    Parameters
-    ----------
-    labels
-        0 between grains, 1 to n in them; with gaps where grains were dropped, merged or deleted.
-    sizes
-        Voxels of each grain in the order of their labels, shape (n,).
-    level
-        Grey value at which grains begin.
-    seen
-        Histogram of the denoised values.
-    n_bodies
-        Connected bodies before they were parted, the small ones left out.
-    n_small
-        ConnectedComponents and grains that were dropped for their size.
-    n_not_finite
-        Voxels without a finite number (NaN, infinities), which are in no grain.
-    probability
-        At which grains begin, where the values are probabilities; else none.
-    outside
-        What lies outside of the scanner's circle, where the labels are -1.
+    - ``labels``: 0 between grains, 1 to n in them; with gaps where grains were dropped, merged or deleted.
+    - ``sizes``: voxels of each grain in the order of their labels, shape (n,).
+    - ``level``: grey value at which grains begin.
+    - ``seen``: histogram of the denoised values.
+    - ``n_bodies``: connected bodies before they were parted, the small ones left out.
+    - ``n_small``: ConnectedComponents and grains that were dropped for their size.
+    - ``n_not_finite``: voxels without a finite number (NaN, infinities), which are in no grain.
+    - ``probability``: at which grains begin, where the values are probabilities; else none.
+    - ``outside``: what lies outside of the scanner's circle, where the labels are -1.
     """
 
     labels: Volume
@@ -209,22 +193,13 @@ def segmentation_steps(
 ) -> Steps:
     """Find the grains in grey values, telling after each step how far it is.
 
-    Parameters
-    ----------
-    source
-        The grey values, or the probabilities of voxels to be grain.
-    scratch
-        Where arrays as large as the volume lie, the result among them; in memory by default.
-    run
-        Applies what is done to slabs and to bodies; the result does not depend on it. Other processes than
-        this one need `source` and `scratch` in files.
-    outside
-        What lies outside of the scanner's circle: in no grain, and of no effect on the level.
+    - ``source``: the grey values, or the probabilities of voxels to be grain.
+    - ``scratch``: where arrays as large as the volume lie, the result among them; in memory by default.
+    - ``run``: applies what is done to slabs and to bodies; the result does not depend on it. Other processes
+      than this one need `source` and `scratch` in files.
+    - ``outside``: what lies outside of the scanner's circle: in no grain, and of no effect on the level.
 
-    Raises
-    ------
-    InputError
-        If the volume is too uniform for an automatic threshold, or no grain is found.
+    Raises InputError if the volume is too uniform for an automatic threshold, or no grain is found.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch, run))
@@ -262,19 +237,11 @@ def correction_steps(
 ) -> Steps:
     """A copy of a segmentation with the objects and edits of `settings`, as :func:`segmentation_steps` ends.
 
-    Parameters
-    ----------
-    found
-        The segmentation without them.
-    grey
-        What it was found in.
-    objects
-        The objects of `found`, if they have been described.
+    - ``found``: the segmentation without them.
+    - ``grey``: what it was found in.
+    - ``objects``: the objects of `found`, if they have been described.
 
-    Raises
-    ------
-    InputError
-        If an edit does not find its grains, or no grain is left.
+    Raises InputError if an edit does not find its grains, or no grain is left.
     """
     numbers: NDArray[np.int32] = (scratch or ScratchArrays()).zeros(found.labels.shape, np.int32)
     np.copyto(numbers, found.labels.array)
@@ -335,12 +302,7 @@ def _staged(stage: str, steps: Iterable[tuple[int, int]]) -> Generator[Segmentat
 class GrainsAtHeight:
     """What one h of the h-maxima gives.
 
-    Parameters
-    ----------
-    h_maxima
-        In voxels.
-    sizes
-        Voxels of each grain, shape (n,).
+    ``h_maxima``: in voxels. ``sizes``: voxels of each grain, shape (n,).
     """
 
     h_maxima: float
@@ -361,15 +323,9 @@ def grains_over_heights(
 ) -> Generator[SegmentationProgress, None, tuple[GrainsAtHeight, ...]]:
     """The grains that :func:`segmentation_steps` finds with each h; what comes before is done once.
 
-    Parameters
-    ----------
-    heights
-        Values of ``h_maxima`` that take the place of the settings' own.
+    ``heights``: values of ``h_maxima`` that take the place of the settings' own.
 
-    Raises
-    ------
-    InputError
-        If an h is negative, or the volume is too uniform for an automatic threshold.
+    Raises InputError if an h is negative, or the volume is too uniform for an automatic threshold.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     tried = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
@@ -510,12 +466,8 @@ def preview(
 ) -> Segmentation:
     """The segmentation of a small part of a volume, as if there were nothing else.
 
-    Parameters
-    ----------
-    level
-        Taken instead of the one that an automatic threshold would find in this part.
-    outside
-        What lies outside of the scanner's circle in the whole volume.
+    ``level``: taken instead of the one that an automatic threshold would find in this part. ``outside``:
+    what lies outside of the scanner's circle in the whole volume.
     """
     part, chosen = part_of(volume, box, settings, level)
     return segment(part, chosen, None if outside is None else outside.within(box))

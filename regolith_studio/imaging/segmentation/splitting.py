@@ -43,18 +43,13 @@ _STEPS = np.array(
 class WatershedBasins:
     """The basins of a height map, and how they meet.
 
-    Parameters
-    ----------
-    basins
-        1 to n where heights are positive, in the order of falling peaks, else 0; shape (nx, ny, nz).
-    sites
-        Voxel of each basin's peak, shape (n, 3).
-    peaks
-        Height of each basin's peak, shape (n,).
-    pairs
-        Basins that meet, from 0, shape (m, 2).
-    summits, passes
-        For each meeting the lower of the highest peaks on its two sides, and the pass, shape (m,).
+    - ``basins``: 1 to n where heights are positive, in the order of falling peaks, else 0; shape (nx, ny,
+      nz).
+    - ``sites``: voxel of each basin's peak, shape (n, 3).
+    - ``peaks``: height of each basin's peak, shape (n,).
+    - ``pairs``: basins that meet, from 0, shape (m, 2).
+    - ``summits``, ``passes``: for each meeting the lower of the highest peaks on its two sides, and the
+      pass, shape (m,).
     """
 
     basins: NDArray[np.int32]
@@ -68,12 +63,8 @@ class WatershedBasins:
 def find_basins(heights: NDArray[np.float32], step_lengths: FloatArray) -> "WatershedBasins":
     """Basins of `heights`, and how they meet.
 
-    Parameters
-    ----------
-    heights
-        Shape (nx, ny, nz); 0 and less is dry land that belongs to no basin.
-    step_lengths
-        Distance of neighbouring voxels along x, y and z, shape (3,).
+    ``heights``: shape (nx, ny, nz); 0 and less is dry land that belongs to no basin. ``step_lengths``:
+    distance of neighbouring voxels along x, y and z, shape (3,).
     """
     padded = np.pad(heights, 1)
     flat = padded.reshape(-1)
@@ -203,13 +194,9 @@ def distance_map(
 ) -> NDArray[np.float32]:
     """Distance of each voxel of the mask to the nearest one outside, in mean voxel edges.
 
-    Parameters
-    ----------
-    edges
-        Of a voxel along x, y and z, in any unit, shape (3,).
-    continued
-        Where the mask may go on beyond the array, as at the border of a scan, the array's end is no
-        surface; elsewhere what is beyond counts as empty.
+    - ``edges``: of a voxel along x, y and z, in any unit, shape (3,).
+    - ``continued``: where the mask may go on beyond the array, as at the border of a scan, the array's end
+      is no surface; elsewhere what is beyond counts as empty.
     """
     rim = tuple((int(not low), int(not high)) for low, high in continued)
     padded = np.pad(mask, rim)
@@ -237,16 +224,10 @@ def in_mean_edges(edges: FloatArray) -> FloatArray:
 class Tile:
     """A body, or a tile of one with its margin, in an array of bodies: all that its grains follow from.
 
-    Parameters
-    ----------
-    numbers
-        Body of each voxel of the volume.
-    body
-        Its number.
-    box, core
-        Box of the body, and of the tile: grains whose peak lies there are the tile's own.
-    margin
-        Looked at around the tile, within the body's box.
+    - ``numbers``: body of each voxel of the volume.
+    - ``body``: its number.
+    - ``box``, ``core``: box of the body, and of the tile: grains whose peak lies there are the tile's own.
+    - ``margin``: looked at around the tile, within the body's box.
     """
 
     numbers: SharedArray
@@ -284,12 +265,8 @@ class Tile:
 class TileGrains:
     """The grains that a tile has found.
 
-    Parameters
-    ----------
-    box
-        Where they lie in the volume.
-    grains
-        1 to n, and 0 elsewhere, shape of the box, in the smallest type that holds n.
+    ``box``: where they lie in the volume. ``grains``: 1 to n, and 0 elsewhere, shape of the box, in the
+    smallest type that holds n.
     """
 
     box: Box
@@ -308,14 +285,9 @@ def grains_of_tile(
 ) -> TileGrains | None:
     """A tile's own grains, or ``None`` if one of them is cut by its ends.
 
-    Parameters
-    ----------
-    edges, settings
-        As in :func:`split`.
-    fill_pores
-        Whether pores of a whole body become part of it; those of tiles are filled before.
-    final
-        Whether grains that are cut are taken as they are.
+    - ``edges``, ``settings``: as in :func:`split`.
+    - ``fill_pores``: whether pores of a whole body become part of it; those of tiles are filled before.
+    - ``final``: whether grains that are cut are taken as they are.
     """
     region, outer = tile.region(), tile.outer
     if fill_pores and tile.is_whole:
@@ -354,20 +326,13 @@ class GrainSplitter:
     Pores are filled first and grains are written to an array of their own, so that no tile depends on what
     another has found, and tiles can be parted by several processes.
 
-    Parameters
-    ----------
-    numbers
-        Body of each voxel, shape (nx, ny, nz), int32; pores of bodies that are cut into tiles are filled.
-    labels
-        Zeros of the same shape; a voxel of grain k becomes -k.
-    bodies
-        What the numbers stand for.
-    edges
-        Of a voxel, shape (3,).
-    settings
-        How touching grains are parted.
-    fill_pores
-        Whether pores inside a body become part of it.
+    - ``numbers``: body of each voxel, shape (nx, ny, nz), int32; pores of bodies that are cut into tiles are
+      filled.
+    - ``labels``: zeros of the same shape; a voxel of grain k becomes -k.
+    - ``bodies``: what the numbers stand for.
+    - ``edges``: of a voxel, shape (3,).
+    - ``settings``: how touching grains are parted.
+    - ``fill_pores``: whether pores inside a body become part of it.
     """
 
     def __init__(
@@ -395,10 +360,7 @@ class GrainSplitter:
     def steps(self, min_voxels: int = 0, run: ParallelMap = map) -> Iterator[tuple[int, int]]:
         """Part all bodies of at least `min_voxels`; yields pieces done and pieces in all after each.
 
-        Parameters
-        ----------
-        run
-            Applies :func:`pores_of_tile` and :func:`grains_of_tile` to tiles.
+        ``run``: applies :func:`pores_of_tile` and :func:`grains_of_tile` to tiles.
         """
         wanted = (np.flatnonzero(self._bodies.sizes >= min_voxels) + 1).tolist()
         left = [tile for body in wanted for tile in self._tiles_of(body)]

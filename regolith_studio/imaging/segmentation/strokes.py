@@ -15,12 +15,7 @@ ERASER = -1
 class Stroke:
     """Voxels that were painted at a time.
 
-    Parameters
-    ----------
-    positions
-        Along x, y, z, shape (n, 3).
-    label
-        Their class, from 0, or :data:`ERASER`.
+    ``positions``: along x, y, z, shape (n, 3). ``label``: their class, from 0, or :data:`ERASER`.
     """
 
     positions: IntArray
@@ -35,16 +30,11 @@ def draw_stroke(
 ) -> Stroke:
     """The voxels of a slice whose centres lie within `radius` of a line.
 
-    Parameters
-    ----------
-    axis, number
-        The slice.
-    points
-        Corners of the line across the slice, in voxels, voxel 0 reaching from 0 to 1; shape (n, 2).
-    radius
-        In voxels.
-    shape
-        Of the volume.
+    - ``axis``, ``number``: the slice.
+    - ``points``: corners of the line across the slice, in voxels, voxel 0 reaching from 0 to 1; shape (n,
+      2).
+    - ``radius``: in voxels.
+    - ``shape``: of the volume.
     """
     across, down = (each for each in range(3) if each != axis)
     low = np.maximum(np.floor(points.min(axis=0) - radius), 0).astype(int)

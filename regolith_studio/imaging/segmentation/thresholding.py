@@ -29,12 +29,7 @@ _multi_otsu: Any = filters.threshold_multiotsu
 class Histogram:
     """How often grey values occur.
 
-    Parameters
-    ----------
-    counts
-        Shape (n,).
-    edges
-        Of the bins, ascending, shape (n + 1,).
+    ``counts``: shape (n,). ``edges``: of the bins, ascending, shape (n + 1,).
     """
 
     counts: IntArray
@@ -79,15 +74,9 @@ def bins_between(lowest: float, highest: float, dtype: np.dtype[Any]) -> FloatAr
 def histogram(values: NDArray[Any], edges: FloatArray | None = None) -> Histogram:
     """How often the grey values occur; values that are no numbers are left out.
 
-    Parameters
-    ----------
-    edges
-        Of equally wide bins; by default :func:`bins_between` the lowest and the highest value.
+    ``edges``: of equally wide bins; by default :func:`bins_between` the lowest and the highest value.
 
-    Raises
-    ------
-    InputError
-        If there are no edges and no value is a finite number.
+    Raises InputError if there are no edges and no value is a finite number.
     """
     seen = finite(values)
     if edges is None:
@@ -105,10 +94,7 @@ def finite(values: NDArray[Any]) -> NDArray[Any]:
 def span(values: NDArray[Any]) -> tuple[float, float]:
     """Lowest and highest value.
 
-    Raises
-    ------
-    InputError
-        If there is none.
+    Raises InputError if there is none.
     """
     if values.size == 0:
         raise InputError("The volume holds no finite grey value.")
@@ -118,15 +104,9 @@ def span(values: NDArray[Any]) -> tuple[float, float]:
 def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any]) -> float:
     """The grey value at which grains begin.
 
-    Parameters
-    ----------
-    dtype
-        Of the volume: tells the range of a probability in whole numbers.
+    ``dtype``: of the volume: tells the range of a probability in whole numbers.
 
-    Raises
-    ------
-    InputError
-        If the volume is too uniform to be parted.
+    Raises InputError if the volume is too uniform to be parted.
     """
     match settings.method:
         case "manual":

@@ -14,16 +14,11 @@ from regolith_studio.registry import Registry
 class ParsedMesh:
     """Triangles as a file states them, unchecked.
 
-    Parameters
-    ----------
-    vertices
-        Shape (n, 3), float64; may hold values that are not finite.
-    faces
-        Shape (m, 3), int64; may point outside the vertices.
-    notes
-        Sentences about parts of the file that were ignored.
-    unit
-        A key of ``readers.units.FILE_UNITS``, where the file or its standard states the unit of lengths.
+    - ``vertices``: shape (n, 3), float64; may hold values that are not finite.
+    - ``faces``: shape (m, 3), int64; may point outside the vertices.
+    - ``notes``: sentences about parts of the file that were ignored.
+    - ``unit``: a key of ``readers.units.FILE_UNITS``, where the file or its standard states the unit of
+      lengths.
     """
 
     vertices: NDArray[np.float64]
@@ -36,23 +31,15 @@ class ParsedMesh:
 class MeshFormat:
     """A mesh format.
 
-    Parameters
-    ----------
-    key
-        Short name, ``stl``.
-    label
-        As in a sentence, ``STL``.
-    suffixes
-        Lower case, with the dot.
-    recognises
-        Whether the first 1,024 bytes can only be this format.
-    parse
-        Bytes and path to triangles; the path serves to find buffers beside the file. Raises ``FileError``
-        with the end of a sentence that begins with the file's name.
-    shares_vertices
-        False where each triangle brings its own three vertices, to be joined after reading.
-    states_unit
-        Whether the file or its standard states the unit of lengths.
+    - ``key``: short name, ``stl``.
+    - ``label``: as in a sentence, ``STL``.
+    - ``suffixes``: lower case, with the dot.
+    - ``recognises``: whether the first 1,024 bytes can only be this format.
+    - ``parse``: bytes and path to triangles; the path serves to find buffers beside the file. Raises
+      ``FileError`` with the end of a sentence that begins with the file's name.
+    - ``shares_vertices``: False where each triangle brings its own three vertices, to be joined after
+      reading.
+    - ``states_unit``: whether the file or its standard states the unit of lengths.
     """
 
     key: str

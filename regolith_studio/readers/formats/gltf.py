@@ -43,10 +43,7 @@ class _Document:
 def parse(data: bytes, path: Path) -> ParsedMesh:
     """All triangles of the scene in its coordinates; points, lines, materials and motion are left out.
 
-    Raises
-    ------
-    FileError
-        If the file is broken, compressed, or refers to a file outside its folder.
+    Raises FileError if the file is broken, compressed, or refers to a file outside its folder.
     """
     try:
         document = _document(data, path)

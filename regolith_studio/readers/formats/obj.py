@@ -18,10 +18,7 @@ _KNOWN = frozenset(
 def parse(data: bytes, _path: Path) -> ParsedMesh:
     """Vertices and triangulated faces of all groups.
 
-    Raises
-    ------
-    FileError
-        If there are no vertices or faces, or a line cannot be understood.
+    Raises FileError if there are no vertices or faces, or a line cannot be understood.
     """
     if b"\0" in data[:4096]:
         raise FileError("is not an OBJ: it holds binary data.")

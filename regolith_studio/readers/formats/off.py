@@ -18,10 +18,7 @@ _COMMENT = re.compile(rb"#[^\r\n]*")
 def parse(data: bytes, _path: Path) -> ParsedMesh:
     """Vertices and triangulated faces; colours, normals and texture coordinates are ignored.
 
-    Raises
-    ------
-    FileError
-        If counts, coordinates or indices are missing or invalid.
+    Raises FileError if counts, coordinates or indices are missing or invalid.
     """
     text = _COMMENT.sub(b"", data)
     keyword = _KEYWORD.match(text)

@@ -64,10 +64,7 @@ class Header:
 def read_header(data: bytes) -> Header:
     """The header, checked against the size of the file.
 
-    Raises
-    ------
-    FileError
-        If it is not a PLY header, or declares more than the file holds.
+    Raises FileError if it is not a PLY header, or declares more than the file holds.
     """
     if not data[:3] == b"ply" or data[3:4] not in (b"\n", b"\r", b" "):
         raise FileError("is not a PLY: it does not begin with the word “ply”.")
@@ -146,10 +143,7 @@ class Columns:
 def binary_columns(data: bytes, place: int, element: Element, order: str) -> tuple[Columns, int]:
     """The element's columns and the place after it; `order` is ``"<"`` or ``">"``.
 
-    Raises
-    ------
-    FileError
-        If the rows go beyond the end of the file.
+    Raises FileError if the rows go beyond the end of the file.
     """
     if element.count == 0:
         return _empty(element), place
@@ -171,10 +165,7 @@ def binary_columns(data: bytes, place: int, element: Element, order: str) -> tup
 def ascii_columns(words: list[bytes], place: int, element: Element) -> tuple[Columns, int]:
     """The element's columns and the index of the word after it.
 
-    Raises
-    ------
-    FileError
-        If words are missing or are no numbers.
+    Raises FileError if words are missing or are no numbers.
     """
     if element.count == 0:
         return _empty(element), place
@@ -341,10 +332,7 @@ _CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")
 def parse(data: bytes, _path: Path) -> ParsedMesh:
     """Vertices and triangulated faces; colours, normals and texture coordinates are ignored.
 
-    Raises
-    ------
-    FileError
-        If the header or a row is broken, or an index points nowhere.
+    Raises FileError if the header or a row is broken, or an index points nowhere.
     """
     header = read_header(data)
     tables, notes = _binary_tables(data, header) if header.encoding else _ascii_tables(data, header)

@@ -23,10 +23,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
 
     The stated normals are ignored: the order of the corners is more reliable.
 
-    Raises
-    ------
-    FileError
-        If the file is neither a whole binary nor a well-formed ASCII STL.
+    Raises FileError if the file is neither a whole binary nor a well-formed ASCII STL.
     """
     if not data:
         raise FileError("is empty: it has no bytes at all.")

@@ -19,16 +19,10 @@ Numbers = NDArray[np.float64]
 class ParsedPositions:
     """Particles as a file states them, unchecked.
 
-    Parameters
-    ----------
-    points
-        Shape (n, 3), float64, in `unit`; may hold values that are not finite.
-    diameters
-        Shape (n,) in `diameter_unit`, or None.
-    unit, diameter_unit
-        Keys of ``readers.units.FILE_UNITS`` where the file names them.
-    notes
-        Sentences.
+    - ``points``: shape (n, 3), float64, in `unit`; may hold values that are not finite.
+    - ``diameters``: shape (n,) in `diameter_unit`, or None.
+    - ``unit``, ``diameter_unit``: keys of ``readers.units.FILE_UNITS`` where the file names them.
+    - ``notes``: sentences.
     """
 
     points: Numbers
@@ -42,17 +36,11 @@ class ParsedPositions:
 class PositionFormat:
     """A format of particle positions.
 
-    Parameters
-    ----------
-    key, label, suffixes
-        As for a mesh format.
-    recognises
-        Whether the first 1,024 bytes can only be this format.
-    parse
-        Bytes, and the names of all columns if a user gave them, to particles. Raises ``FileError`` with the
-        second half of a sentence.
-    takes_names
-        Whether a user may name the columns; they count more than those of the file.
+    - ``key``, ``label``, ``suffixes``: as for a mesh format.
+    - ``recognises``: whether the first 1,024 bytes can only be this format.
+    - ``parse``: bytes, and the names of all columns if a user gave them, to particles. Raises ``FileError``
+      with the second half of a sentence.
+    - ``takes_names``: whether a user may name the columns; they count more than those of the file.
     """
 
     key: str
@@ -95,10 +83,8 @@ def named_columns(names: tuple[str, ...]) -> NamedColumns:
 
     A unit in brackets behind a name (``x [mm]``) counts for the positions or the size.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence if such a unit is unknown, or x, y and z have different ones.
+    Raises FileError with the second half of a sentence if such a unit is unknown, or x, y and z have
+    different ones.
     """
     cleaned: dict[str, int] = {}
     units: dict[str, str | None] = {}
@@ -138,11 +124,8 @@ def _unit_of(stated: list[str | None]) -> str | None:
 def asked_columns(names: tuple[str, ...], width: int) -> NamedColumns:
     """The columns that a user has named.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence if they are not as many as those of the file, or x, y and z are not
-        among them.
+    Raises FileError with the second half of a sentence if they are not as many as those of the file, or x, y
+    and z are not among them.
     """
     shown = printable(" ".join(names))[:60]
     if len(names) != width:

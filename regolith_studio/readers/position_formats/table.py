@@ -26,10 +26,7 @@ def parse(data: bytes, asked: tuple[str, ...]) -> ParsedPositions:
 
     Without names a fourth column is the diameter, which a note says.
 
-    Raises
-    ------
-    FileError
-        If the text is no table, or what its columns are is not known.
+    Raises FileError if the text is no table, or what its columns are is not known.
     """
     table = number_rows(data, with_units=True)
     if asked:

@@ -26,10 +26,7 @@ _POINT_DATA = re.compile(rb"^POINT_DATA[ \t]+(\d{1,12})", re.MULTILINE | re.IGNO
 def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
     """Points, and the scalars of theirs that are named diameter or radius.
 
-    Raises
-    ------
-    FileError
-        If the file is cut short, or of another kind.
+    Raises FileError if the file is cut short, or of another kind.
     """
     head = data[:1024].splitlines()
     if len(head) < 3 or not head[0].startswith(b"# vtk DataFile"):

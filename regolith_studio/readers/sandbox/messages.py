@@ -42,10 +42,7 @@ class SandboxMessage:
 def send(stream: Writable, message: SandboxMessage) -> None:
     """Write a whole message.
 
-    Raises
-    ------
-    OSError
-        If the other side has gone.
+    Raises OSError if the other side has gone.
     """
     arrays = [np.ascontiguousarray(array) for array in message.arrays]
     listed = [(array.dtype.str, array.shape) for array in arrays]
@@ -59,10 +56,7 @@ def send(stream: Writable, message: SandboxMessage) -> None:
 def receive(stream: Readable) -> SandboxMessage:
     """Read a whole message.
 
-    Raises
-    ------
-    EOFError
-        If the other side has gone, or what came is no message.
+    Raises EOFError if the other side has gone, or what came is no message.
     """
     length = _LENGTH.unpack(_read_all(stream, _LENGTH.size))[0]
     if length > MAX_HEADER_BYTES:

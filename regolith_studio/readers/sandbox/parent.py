@@ -40,14 +40,10 @@ class Sandbox:
 
     It is kept from one request to the next, and replaced after a crash, a time-out or a very large result.
 
-    Parameters
-    ----------
-    memory
-        Bytes of addresses that the child may use, where the system can limit them; by default 6 GiB, or
-        three quarters of the machine's memory where that is less.
-    seconds
-        Wall time for a small file, of which at most 1.5 s may be processor time; a larger file gets one
-        second more of both per million bytes.
+    - ``memory``: bytes of addresses that the child may use, where the system can limit them; by default 6
+      GiB, or three quarters of the machine's memory where that is less.
+    - ``seconds``: wall time for a small file, of which at most 1.5 s may be processor time; a larger file
+      gets one second more of both per million bytes.
     """
 
     def __init__(self, memory: int | None = None, seconds: float = BASE_SECONDS) -> None:
@@ -75,10 +71,7 @@ class Sandbox:
     def request(self, task: str, path: Path, **options: Any) -> SandboxMessage:
         """Let the child do `task` on the file at `path`.
 
-        Raises
-        ------
-        FileError
-            If the file is refused, or its reader crashes or exceeds its limits.
+        Raises FileError if the file is refused, or its reader crashes or exceeds its limits.
         """
         more = checked_size(path) * SECONDS_PER_BYTE
         work = min(self._seconds, WORK_SECONDS) + more
@@ -89,14 +82,9 @@ class Sandbox:
     ) -> SandboxMessage:
         """As `request`, with explicit limits and without a check of the file's size.
 
-        Parameters
-        ----------
-        seconds
-            Wall time that the task may take.
-        work
-            Processor time that it may take, where the system counts it; by default as much.
-        options
-            Further arguments of the task; ``memory`` limits the bytes that it may allocate.
+        - ``seconds``: wall time that the task may take.
+        - ``work``: processor time that it may take, where the system counts it; by default as much.
+        - ``options``: further arguments of the task; ``memory`` limits the bytes that it may allocate.
         """
         work = min(work or seconds, seconds)
         limits = {"seconds": seconds + 2.0, "work": work}
@@ -223,10 +211,7 @@ def _must_replace_child(answer: SandboxMessage) -> bool:
 def checked_size(path: Path, largest: int | None = MAX_FILE_BYTES) -> int:
     """Size in bytes of a regular file that can be read whole, or in parts if `largest` is None.
 
-    Raises
-    ------
-    FileError
-        If there is no such file, it is not a regular file, or it is too large.
+    Raises FileError if there is no such file, it is not a regular file, or it is too large.
     """
     try:
         status = path.stat()

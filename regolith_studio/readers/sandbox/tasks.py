@@ -75,10 +75,7 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
 
     The content decides where it is unmistakable, the suffix otherwise.
 
-    Raises
-    ------
-    FileError
-        With a whole sentence that names the file.
+    Raises FileError with a whole sentence that names the file.
     """
     try:
         data = without_byte_order_mark(data)
@@ -195,15 +192,9 @@ def parse_positions(
 ) -> tuple[ParsedPositions, PositionFormat]:
     """Particles with finite positions and positive diameters, and the format that they came in.
 
-    Parameters
-    ----------
-    columns
-        The names of all columns, where the file does not name them or names them wrongly.
+    ``columns``: the names of all columns, where the file does not name them or names them wrongly.
 
-    Raises
-    ------
-    FileError
-        With a whole sentence that names the file.
+    Raises FileError with a whole sentence that names the file.
     """
     try:
         if not data:
@@ -303,10 +294,7 @@ def read_slices(request: dict[str, Any]) -> SandboxMessage:
 def read_checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
     """What the volume gives for the slices, if it is what its header promised.
 
-    Raises
-    ------
-    FileError
-        If the file holds something else.
+    Raises FileError if the file holds something else.
     """
     with np.errstate(all="ignore"):
         voxels = volume.read(z0, z1)
@@ -319,10 +307,7 @@ def read_checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
 def open_volume_file(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
     """An opened volume with a checked header, and the format that it came in.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence.
+    Raises FileError with the second half of a sentence.
     """
     row, _ = volume_format_of(path)
     if request.get("axes") and row.key not in WITH_AXES:
@@ -339,10 +324,7 @@ def open_volume_file(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, V
 def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
     """The format of a file by its content where that is unmistakable, else by its suffix; and notes.
 
-    Raises
-    ------
-    FileError
-        If it is not a volume format.
+    Raises FileError if it is not a volume format.
     """
     rows = VOLUME_FORMATS
     if path.is_dir():

@@ -13,23 +13,14 @@ from regolith_studio.registry import Registry
 class VolumeFormat:
     """A volume format.
 
-    Parameters
-    ----------
-    key
-        Short name, ``tiff``.
-    label
-        As in a sentence, ``a TIFF stack``.
-    suffixes
-        Lower case, with the dot.
-    recognises
-        Whether the first 1,024 bytes can only be this format.
-    prepare
-        Import the libraries that `open` needs.
-    holds
-        Whether a folder is a volume of this format.
-    open
-        Path and options of the request to an opened volume. Raises ``FileError`` with the end
-        of a sentence that begins with the file's name.
+    - ``key``: short name, ``tiff``.
+    - ``label``: as in a sentence, ``a TIFF stack``.
+    - ``suffixes``: lower case, with the dot.
+    - ``recognises``: whether the first 1,024 bytes can only be this format.
+    - ``prepare``: import the libraries that `open` needs.
+    - ``holds``: whether a folder is a volume of this format.
+    - ``open``: path and options of the request to an opened volume. Raises ``FileError`` with the end of a
+      sentence that begins with the file's name.
     """
 
     key: str

@@ -99,10 +99,7 @@ class PackedPixelsError(FileError):
 def frames_of(path: Path) -> list[DicomFrame]:
     """What a file states of its frames, without their pixels; none for a file of another kind than an image.
 
-    Raises
-    ------
-    FileError
-        If its frames are no grey images, or are packed by something else than run lengths.
+    Raises FileError if its frames are no grey images, or are packed by something else than run lengths.
     """
     data = _parsed(path, stop_before_pixels=True, specific_tags=list(_TAGS))
     name = display_name(path)
@@ -245,10 +242,7 @@ def _parsed(path: Path, **options: Any) -> Any:
 def pixels_of(frames: Sequence[DicomFrame]) -> Iterator[NDArray[Any]]:
     """The stored values of frames, shape (rows, columns) each; those of one file are read together.
 
-    Raises
-    ------
-    FileError
-        If a file has other pixels than its header states.
+    Raises FileError if a file has other pixels than its header states.
     """
     for path, run in groupby(frames, key=lambda each: each.path):
         there = list(run)
@@ -332,10 +326,8 @@ class DicomVoxels:
 def open_dicom(path: Path, options: Mapping[str, Any]) -> DicomVoxels:
     """The series ``options["dataset"]`` of a folder, by default the longest, or that of the file given.
 
-    Raises
-    ------
-    FileError
-        If a file is broken or packed, or the slices are of several sizes or do not lie at equal distances.
+    Raises FileError if a file is broken or packed, or the slices are of several sizes or do not lie at equal
+    distances.
     """
     folder = path if path.is_dir() else path.parent
     names = [str(name) for name in options.get("names") or dicom_names(folder)]
@@ -360,13 +352,7 @@ _Others = dict[str, PackedPixelsError | None]
 
 
 def _series(folder: Path, names: list[str]) -> tuple[dict[str, list[DicomFrame]], _Others]:
-    """The frames of each series, and the files that hold none that can be read.
-
-    Raises
-    ------
-    FileError
-        If a file is damaged, or all are of another kind or packed.
-    """
+    """The frames of each series, and the files that hold none that can be read."""
     series: dict[str, list[DicomFrame]] = {}
     others: _Others = {}
     for name in names:
@@ -393,13 +379,7 @@ def _series_named(path: Path) -> str:
 
 
 def _left_out(others: _Others, chosen: str) -> tuple[str, ...]:
-    """A note about files without an image of the series.
-
-    Raises
-    ------
-    FileError
-        If one of them is of the series and packed.
-    """
+    """A note about files without an image of the series."""
     for error in others.values():
         if error is not None and error.series in ("", chosen):
             raise error
@@ -452,11 +432,6 @@ def _ordered(slices: list[DicomFrame]) -> tuple[list[DicomFrame], float, tuple[s
     """The slices from the first to the last, their distance in millimetres (0 if unknown), and notes.
 
     They go up along the normal of rows and columns, so that x, y and z are right-handed.
-
-    Raises
-    ------
-    FileError
-        If they are of several sizes or directions, or not at equal distances.
     """
     first = slices[0]
     for each in slices:

@@ -86,10 +86,7 @@ class ScaledVoxels:
 def open_nifti(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
     """A three-dimensional image of one file.
 
-    Raises
-    ------
-    FileError
-        If the header breaks the rules, holds colours, or its voxels are in a second file.
+    Raises FileError if the header breaks the rules, holds colours, or its voxels are in a second file.
     """
     with path.open("rb") as file:
         packed = file.read(2) == _GZIP

@@ -56,10 +56,7 @@ _LEFT_HANDED = ("left-anterior-superior", "las", "3d-left-handed")
 def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
     """A three-dimensional array of plain numbers.
 
-    Raises
-    ------
-    FileError
-        If the header breaks the rules, the encoding is another one, or the data lie elsewhere.
+    Raises FileError if the header breaks the rules, the encoding is another one, or the data lie elsewhere.
     """
     with path.open("rb") as file:
         head = file.read(MAX_HEADER_BYTES)

@@ -119,10 +119,8 @@ class ZarrVoxels:
 def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:
     """The level ``options["dataset"]`` of an image, by default the finest.
 
-    Raises
-    ------
-    FileError
-        If the metadata break the rules, a codec is not among those that are read, or there is no volume.
+    Raises FileError if the metadata break the rules, a codec is not among those that are read, or there is
+    no volume.
     """
     attributes = _attributes(path)
     image = _image(attributes)
@@ -186,13 +184,7 @@ def _json(folder: Path, name: str) -> dict[str, Any]:
 
 
 def _checked(folder: Path, name: str) -> Path:
-    """A file of a hierarchy, which no link may lead out of.
-
-    Raises
-    ------
-    FileError
-        If one does, or it is no regular file.
-    """
+    """A file of a hierarchy, which no link may lead out of."""
     path = folder / name
     if not path.resolve().is_relative_to(folder.resolve()):
         raise FileError(f"has a link out of its folder, “{printable(name)[:60]}”, which is not followed.")

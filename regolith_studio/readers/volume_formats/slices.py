@@ -69,10 +69,7 @@ class SliceFiles:
 def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
     """The series ``options["dataset"]`` among the files ``options["names"]``, by default the longest.
 
-    Raises
-    ------
-    FileError
-        If there is none, slices are missing and not allowed to, or the first cannot be read.
+    Raises FileError if there is none, slices are missing and not allowed to, or the first cannot be read.
     """
     series, _ = slice_series(map(str, options.get("names") or ()))
     if not series:
@@ -188,13 +185,7 @@ def _picture(path: Path) -> NDArray[Any]:
 
 
 def _bmp_edges(data: bytes) -> tuple[int, int]:
-    """Width and height of a bitmap; the decoder trusts its header, so that all of it is checked.
-
-    Raises
-    ------
-    FileError
-        If the pixels are packed, or are not where the header states.
-    """
+    """Width and height of a bitmap; the decoder trusts its header, so that all of it is checked."""
     begin, header, width, height, planes, bits, packing, _, colours = _BMP.unpack_from(data)
     if header < 40 or planes != 1 or bits not in (1, 4, 8, 16, 24, 32) or width <= 0:
         raise FileError("has no header of a Windows bitmap; save it as PNG.")

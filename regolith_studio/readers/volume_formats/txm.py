@@ -30,16 +30,10 @@ _BROKEN = "is a broken TXM: the places of its streams are invalid; copy it again
 class TxmVoxels:
     """Slices that lie in sectors of a compound file.
 
-    Parameters
-    ----------
-    file
-        The file, or the stream in it that holds small streams.
-    offset, sector_bytes
-        Where its first sector begins, and the size of one.
-    sectors
-        Numbers of the sectors of each slice, shape (nz, sectors a slice).
-    header, stored
-        Shape and type of the voxels in memory, and their type in the file.
+    - ``file``: the file, or the stream in it that holds small streams.
+    - ``offset``, ``sector_bytes``: where its first sector begins, and the size of one.
+    - ``sectors``: numbers of the sectors of each slice, shape (nz, sectors a slice).
+    - ``header``, ``stored``: shape and type of the voxels in memory, and their type in the file.
     """
 
     def __init__(
@@ -79,10 +73,7 @@ class TxmVoxels:
 def open_txm(path: Path, _options: Mapping[str, Any]) -> TxmVoxels:
     """The slices of a reconstruction.
 
-    Raises
-    ------
-    FileError
-        If the file holds projections, or its streams are not those of a TXM.
+    Raises FileError if the file holds projections, or its streams are not those of a TXM.
     """
     if path.suffix.lower() == ".txrm":
         raise FileError("holds projections, not a volume: reconstruct it and open the TXM file.")
@@ -191,13 +182,7 @@ def _first_sectors(compound: Any, header: VoxelHeader) -> NDArray[np.int64]:
 def _chains(
     table: NDArray[np.uint32], starts: NDArray[np.int64], slice_bytes: int, sector_bytes: int
 ) -> NDArray[np.uint32]:
-    """The sectors of all slices, followed through the table side by side; shape (nz, sectors a slice).
-
-    Raises
-    ------
-    FileError
-        If a chain leaves the table, or a sector is used twice.
-    """
+    """The sectors of all slices, followed through the table side by side; shape (nz, sectors a slice)."""
     count = -(-slice_bytes // sector_bytes)
     if count * len(starts) > len(table):
         raise FileError("is damaged or cut short: its voxels need more sectors than the file has.")

@@ -25,10 +25,7 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
     in a number only is one volume, given as the folder itself; any other folder stands for the volume files
     in it (raw ones apart, which must be described one by one) and the folders in it that are volumes.
 
-    Raises
-    ------
-    FileError
-        If there is nothing at the path, or nothing in the folder.
+    Raises FileError if there is nothing at the path, or nothing in the folder.
     """
     path = Path(path)
     if not path.is_dir():
@@ -49,10 +46,7 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
 def member_names(path: Path) -> tuple[str, ...]:
     """Names, relative to :func:`member_folder`, of the files that are one volume; empty if it is one file.
 
-    Raises
-    ------
-    FileError
-        If there are too many.
+    Raises FileError if there are too many.
     """
     if not path.is_dir():
         return dicom_names(path.parent) if path.is_file() and is_dicom(path) else ()
@@ -84,10 +78,7 @@ def missing_slices(folder: Path) -> dict[str, str]:
 def members_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
     """Bytes of the files of a volume in all, and a fingerprint of their sizes and times.
 
-    Raises
-    ------
-    FileError
-        If one of them is not a regular file.
+    Raises FileError if one of them is not a regular file.
     """
     total, newest = 0, 0
     for name in names:

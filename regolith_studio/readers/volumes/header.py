@@ -23,21 +23,12 @@ VoxelSize = float | Sequence[float]
 class RawLayout:
     """Layout of a raw file, which has no header.
 
-    Parameters
-    ----------
-    shape
-        Voxels along x, y and z; x runs fastest in the file.
-    dtype
-        Type of a voxel, ``uint8``, ``int16``, ``float32``, ...
-    byte_order
-        ``little`` or ``big``.
-    offset
-        Bytes before the first voxel.
+    - ``shape``: voxels along x, y and z; x runs fastest in the file.
+    - ``dtype``: type of a voxel, ``uint8``, ``int16``, ``float32``, ...
+    - ``byte_order``: ``little`` or ``big``.
+    - ``offset``: bytes before the first voxel.
 
-    Raises
-    ------
-    InputError
-        If no voxels can be like that.
+    Raises InputError if no voxels can be like that.
     """
 
     shape: Shape
@@ -71,28 +62,16 @@ class RawLayout:
 class VolumeHeader:
     """Description of a volume before it is read.
 
-    Parameters
-    ----------
-    path
-        The file, or the folder of slices.
-    format
-        Key of the format: ``tiff``, ``slices``, ``npy``, ``raw``, ...
-    shape
-        Voxels along x, y and z.
-    dtype
-        Type of a voxel in memory.
-    voxel_size
-        Edges along x, y and z in `unit`; None where the file does not state it.
-    unit
-        Key of ``readers.units.UNITS``; None where the file does not state it.
-    kind
-        ``labels`` or ``grey``, as guessed from a few slices; the caller may know better.
-    datasets, dataset
-        The volumes in the file where it can hold several, and the name of this one.
-    bytes
-        Memory that the whole volume takes.
-    notes
-        Sentences that a user should read.
+    - ``path``: the file, or the folder of slices.
+    - ``format``: key of the format: ``tiff``, ``slices``, ``npy``, ``raw``, ...
+    - ``shape``: voxels along x, y and z.
+    - ``dtype``: type of a voxel in memory.
+    - ``voxel_size``: edges along x, y and z in `unit`; None where the file does not state it.
+    - ``unit``: key of ``readers.units.UNITS``; None where the file does not state it.
+    - ``kind``: ``labels`` or ``grey``, as guessed from a few slices; the caller may know better.
+    - ``datasets``, ``dataset``: the volumes in the file where it can hold several, and the name of this one.
+    - ``bytes``: memory that the whole volume takes.
+    - ``notes``: sentences that a user should read.
     """
 
     path: Path
@@ -120,19 +99,11 @@ def voxel_size_in_micrometres(
 ) -> Sizes:
     """Edges of a voxel: those given, else those that the file states.
 
-    Parameters
-    ----------
-    stated
-        Edges and unit of the file, each None where it does not state it.
-    voxel_size
-        One edge or three (x, y, z) in `unit`, or in micrometres without one.
-    unit
-        With no `voxel_size`: the unit of the file's own numbers, or ``voxel:SIZE``.
+    - ``stated``: edges and unit of the file, each None where it does not state it.
+    - ``voxel_size``: one edge or three (x, y, z) in `unit`, or in micrometres without one.
+    - ``unit``: with no `voxel_size`: the unit of the file's own numbers, or ``voxel:SIZE``.
 
-    Raises
-    ------
-    InputError
-        If the voxel size is unknown or not positive.
+    Raises InputError if the voxel size is unknown or not positive.
     """
     if voxel_size is None and unit is not None and unit.startswith("voxel"):
         voxel_size, unit = unit_factor(unit), "um"
@@ -171,10 +142,7 @@ def layout_from_name(path: Path) -> RawLayout | None:
     The name must hold the voxels along x, y and z; the type may stand there too, and follows from the
     size otherwise. What the file has more than the voxels, up to 64 KiB, is a header before them.
 
-    Raises
-    ------
-    FileError
-        If there is no such file.
+    Raises FileError if there is no such file.
     """
     size = checked_size(path, largest=None)
     found = _EDGES.search(path.stem)
@@ -223,10 +191,7 @@ def guess_kind(slices: NDArray[Any]) -> Kind:
     a map of few values with no 0, which has a number for what is between the grains, too. Negative
     values are greys unless most values are 0; if they are labels, reading them is refused.
 
-    Parameters
-    ----------
-    slices
-        A few slices of a volume, shape (k, ny, nx).
+    ``slices``: a few slices of a volume, shape (k, ny, nx).
     """
     if slices.dtype.kind == "b" or (slices.dtype.kind == "f" and not _whole(slices)):
         return "grey"

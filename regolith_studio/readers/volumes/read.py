@@ -61,21 +61,14 @@ SliceListener = Callable[[int, int], None]
 class SlabReader:
     """A volume whose header has been read, slices first; nothing of it is in memory.
 
-    Parameters
-    ----------
-    path, request
-        The file, and the arguments of its requests.
-    header
-        Description of the voxels.
-    format
-        Key of the format.
-    in_order, layer
-        Whether the file is best read from its beginning on, and how many slices at a time.
-    sandbox
-        The sandbox that reads it; by default that for volumes of the current process, so that a reader can be
-        sent to the workers of a pool.
-    plain
-        The voxels themselves, where they lie in the file as they are and need no child.
+    - ``path``, ``request``: the file, and the arguments of its requests.
+    - ``header``: description of the voxels.
+    - ``format``: key of the format.
+    - ``in_order``, ``layer``: whether the file is best read from its beginning on, and how many slices at a
+      time.
+    - ``sandbox``: the sandbox that reads it; by default that for volumes of the current process, so that a
+      reader can be sent to the workers of a pool.
+    - ``plain``: the voxels themselves, where they lie in the file as they are and need no child.
     """
 
     path: Path
@@ -110,10 +103,7 @@ class SlabReader:
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx).
 
-        Raises
-        ------
-        FileError
-            If the file is damaged there.
+        Raises FileError if the file is damaged there.
         """
         out = np.empty((z1 - z0, *self.header.shape[1:]), self.header.dtype)
         for start, end in self.pieces(z0, z1):
@@ -165,10 +155,8 @@ def open_slab_reader(
 ) -> SlabReader:
     """A volume's header, read and checked by the child.
 
-    Raises
-    ------
-    FileError
-        With one sentence if it is not a volume, is damaged, or holds several and none was named.
+    Raises FileError with one sentence if it is not a volume, is damaged, or holds several and none was
+    named.
     """
     reader, path = sandbox or volume_sandbox(), path.absolute()  # workers may run in other folders
     if not path.is_dir():
@@ -234,20 +222,12 @@ _SAMPLES, _SAMPLE_BYTES = (0.5, 0.3, 0.7), 32 * 1024**2
 class VolumeFile:
     """A volume of any size, read a few slices at a time; indexed [x, y, z] as `Volume` is.
 
-    Parameters
-    ----------
-    shape
-        Voxels along x, y and z.
-    dtype
-        Type of a voxel.
-    voxel_size
-        Edges along x, y and z in micrometres.
-    kind
-        ``labels`` or ``grey``.
-    name
-        As the user knows the volume.
-    notes
-        Sentences that a user should read.
+    - ``shape``: voxels along x, y and z.
+    - ``dtype``: type of a voxel.
+    - ``voxel_size``: edges along x, y and z in micrometres.
+    - ``kind``: ``labels`` or ``grey``.
+    - ``name``: as the user knows the volume.
+    - ``notes``: sentences that a user should read.
     """
 
     shape: Shape
@@ -261,10 +241,7 @@ class VolumeFile:
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (nx, ny, z1 - z0), in Fortran's order.
 
-        Raises
-        ------
-        FileError
-            If the file is damaged there.
+        Raises FileError if the file is damaged there.
         """
         if not 0 <= z0 < z1 <= self.shape[2]:
             raise ValueError(f"slices {z0} to {z1} are not within 0 to {self.shape[2]}")
@@ -345,26 +322,15 @@ def describe_volume(
 ) -> VolumeHeader:
     """Read the header of a volume; at most a few slices are decoded.
 
-    Parameters
-    ----------
-    path
-        A file of one of ``VOLUME_FORMATS``, or a folder of slices.
-    dataset
-        Which volume of a file that holds several; by default the likeliest.
-    axes
-        Letters of the array's axes, the slowest first, where an NPY or HDF5 file does not state
-        them (default ``zyx``, slices first) or states them wrongly.
-    allow_gaps
-        Whether slices that are absent from a folder become empty ones, instead of a refusal.
-    raw
-        Layout of a raw file.
-    sandbox
-        The child process that parses the file; by default the one of this process for volumes.
+    - ``path``: a file of one of ``VOLUME_FORMATS``, or a folder of slices.
+    - ``dataset``: which volume of a file that holds several; by default the likeliest.
+    - ``axes``: letters of the array's axes, the slowest first, where an NPY or HDF5 file does not state them
+      (default ``zyx``, slices first) or states them wrongly.
+    - ``allow_gaps``: whether slices that are absent from a folder become empty ones, instead of a refusal.
+    - ``raw``: layout of a raw file.
+    - ``sandbox``: the child process that parses the file; by default the one of this process for volumes.
 
-    Raises
-    ------
-    FileError
-        With one sentence if the file cannot be read.
+    Raises FileError with one sentence if the file cannot be read.
     """
     file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
     header = file.header

@@ -22,22 +22,14 @@ _Bound = tuple[float | None, str]
 class RegionSettings:
     """Region of interest of a volume; picklable.
 
-    Parameters
-    ----------
-    crop
-        Ranges along x, y and z, ``X0:X1,Y0:Y1,Z0:Z1``: voxels from X0 up to but not including X1, or lengths
-        with a unit from the volume's outer faces on (``0.2:1.5mm``). A bound that is left out is the face.
-        Empty for the whole volume.
-    bin
-        Edge in voxels of the cubes whose mean becomes one voxel.
-    outside
-        Grey value outside of the scanner's circle: a number, ``nan``, ``none`` if the scan fills its slices,
-        or ``auto`` to look for one.
+    - ``crop``: ranges along x, y and z, ``X0:X1,Y0:Y1,Z0:Z1``: voxels from X0 up to but not including X1, or
+      lengths with a unit from the volume's outer faces on (``0.2:1.5mm``). A bound that is left out is the
+      face. Empty for the whole volume.
+    - ``bin``: edge in voxels of the cubes whose mean becomes one voxel.
+    - ``outside``: grey value outside of the scanner's circle: a number, ``nan``, ``none`` if the scan fills
+      its slices, or ``auto`` to look for one.
 
-    Raises
-    ------
-    InputError
-        If the ranges or the value cannot be understood.
+    Raises InputError if the ranges or the value cannot be understood.
     """
 
     crop: str = setting(
@@ -83,10 +75,7 @@ class RegionSettings:
     def of(self, source: "SliceSource") -> "SliceSource":
         """This region of a volume, read slab by slab.
 
-        Raises
-        ------
-        InputError
-            As :class:`~regolith_studio.imaging.volume_slabs.VolumeRegion`.
+        Raises InputError as :class:`~regolith_studio.imaging.volume_slabs.VolumeRegion`.
         """
         if self.is_whole:
             return source
@@ -111,16 +100,10 @@ def crop_of_rectangle(
 ) -> str:
     """The crop of a rectangle in a slice of a region, in voxels of the whole volume; along `axis` it stays.
 
-    Parameters
-    ----------
-    region
-        What the slice belongs to.
-    origin
-        Of the region, as in a ``Volume``.
-    axis
-        Direction across the slice.
-    low, high
-        First voxels of the region along the two other axes, and those after the last.
+    - ``region``: what the slice belongs to.
+    - ``origin``: of the region, as in a ``Volume``.
+    - ``axis``: direction across the slice.
+    - ``low``, ``high``: first voxels of the region along the two other axes, and those after the last.
     """
     parts = region.crop.split(",") if region.crop else [":"] * 3
     across = [each for each in range(3) if each != axis]

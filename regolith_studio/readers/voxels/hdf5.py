@@ -42,18 +42,11 @@ _AXIS = re.compile(r"(?:.*[_ ])?([xyztc])(?:[_ ].*|axis|pos(?:ition)?)?", re.IGN
 class StatedLayout:
     """What a file states of one array.
 
-    Parameters
-    ----------
-    axes
-        A letter of ``tczyx`` for each axis; empty where they are not stated.
-    voxel_size, unit
-        Edges along x, y and z, and the key of their unit.
-    shape
-        Slices, rows and columns without padding, where that is less than the array has.
-    unsigned
-        Whether signed numbers are unsigned ones.
-    notes
-        Sentences for the user.
+    - ``axes``: a letter of ``tczyx`` for each axis; empty where they are not stated.
+    - ``voxel_size``, ``unit``: edges along x, y and z, and the key of their unit.
+    - ``shape``: slices, rows and columns without padding, where that is less than the array has.
+    - ``unsigned``: whether signed numbers are unsigned ones.
+    - ``notes``: sentences for the user.
     """
 
     axes: str = ""
@@ -201,16 +194,11 @@ _ILASTIK = "exported_data"
 class Hdf5Volume:
     """A volume in a file: a dataset, or one channel of it.
 
-    Parameters
-    ----------
-    name
-        As the chooser shows it: the dataset's path, with the channel in brackets where it has several.
-    path, channel
-        The dataset, and the index along its channel axis.
-    axes
-        A letter of ``tczyx`` for each axis of the dataset.
-    shape
-        Of the dataset, all axes.
+    - ``name``: as the chooser shows it: the dataset's path, with the channel in brackets where it has
+      several.
+    - ``path``, ``channel``: the dataset, and the index along its channel axis.
+    - ``axes``: a letter of ``tczyx`` for each axis of the dataset.
+    - ``shape``: of the dataset, all axes.
     """
 
     name: str
@@ -233,15 +221,9 @@ class Hdf5Volume:
 def find_volumes(file: Any, axes: str = "") -> list[Hdf5Volume]:
     """All volumes of an open ``h5py.File``, ilastik's own name first, then the largest.
 
-    Parameters
-    ----------
-    axes
-        Letters that override the axes in the file, for arrays of as many dimensions.
+    ``axes``: letters that override the axes in the file, for arrays of as many dimensions.
 
-    Raises
-    ------
-    FileError
-        If the file holds more objects than any volume file does.
+    Raises FileError if the file holds more objects than any volume file does.
     """
     found = [
         candidate for path, dataset in _datasets(file) for candidate in _volumes_of(file, path, dataset, axes)
@@ -252,10 +234,7 @@ def find_volumes(file: Any, axes: str = "") -> list[Hdf5Volume]:
 def check_storage(dataset: Any) -> None:
     """Refuse a dataset whose values lie in other files.
 
-    Raises
-    ------
-    FileError
-        If they do.
+    Raises FileError if they do.
     """
     if dataset.external:
         raise FileError("keeps these voxels in another file, which is not followed; copy them into one file.")

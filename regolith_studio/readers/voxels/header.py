@@ -47,22 +47,13 @@ class DatasetEntry:
 class VoxelHeader:
     """Description of the voxels in a file, read before any of them is decoded.
 
-    Parameters
-    ----------
-    shape
-        Slices, rows, columns: (nz, ny, nx).
-    dtype
-        Type of the voxels in memory, in native byte order.
-    voxel_size
-        Edges along x, y and z, in `unit`; None where the file does not state it.
-    unit
-        A key of ``readers.units.UNITS``; None where the file does not state it.
-    kind
-        Where the file itself states it.
-    notes
-        Sentences for the user.
-    datasets, dataset
-        The arrays that the file offers, and the name of the one that this is.
+    - ``shape``: slices, rows, columns: (nz, ny, nx).
+    - ``dtype``: type of the voxels in memory, in native byte order.
+    - ``voxel_size``: edges along x, y and z, in `unit`; None where the file does not state it.
+    - ``unit``: a key of ``readers.units.UNITS``; None where the file does not state it.
+    - ``kind``: where the file itself states it.
+    - ``notes``: sentences for the user.
+    - ``datasets``, ``dataset``: the arrays that the file offers, and the name of the one that this is.
     """
 
     shape: Shape
@@ -106,10 +97,7 @@ class OpenVolume(Protocol):
 def three_dimensions(shape: tuple[int, ...]) -> Shape:
     """The shape without its edges of one voxel, which must leave three (or the last three).
 
-    Raises
-    ------
-    FileError
-        If no volume has such a shape.
+    Raises FileError if no volume has such a shape.
     """
     edges = [int(edge) for edge in shape]
     if any(edge < 1 for edge in edges):
@@ -128,10 +116,7 @@ def three_dimensions(shape: tuple[int, ...]) -> Shape:
 def stated_axes(axes: str, dimensions: int) -> str:
     """The letters that a user gave for an array's axes, each of ``tczyx`` once, the slowest first.
 
-    Raises
-    ------
-    FileError
-        If they do not fit the array.
+    Raises FileError if they do not fit the array.
     """
     letters = axes.lower()
     if len(letters) != dimensions:
@@ -148,10 +133,7 @@ def stated_axes(axes: str, dimensions: int) -> str:
 def voxel_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
     """The type in the machine's byte order, if voxels can have it.
 
-    Raises
-    ------
-    FileError
-        If they cannot.
+    Raises FileError if they cannot.
     """
     if dtype.hasobject:
         raise FileError("holds Python objects, which could run programs; save it as plain numbers.")
@@ -165,10 +147,7 @@ def voxel_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
 def checked_header(header: VoxelHeader) -> VoxelHeader:
     """The header, if its slices are of a size that can be read.
 
-    Raises
-    ------
-    FileError
-        If a single slice is too large.
+    Raises FileError if a single slice is too large.
     """
     if header.slice_bytes > MAX_SLICE_BYTES:
         size = header.slice_bytes / 1024**3

@@ -36,10 +36,7 @@ class _Description:
 def open_described(path: Path) -> PlainVoxels:
     """The voxels that a header describes, which must lie beside it and be just as many.
 
-    Raises
-    ------
-    FileError
-        If the header breaks the rules, or the voxels are elsewhere or of another number.
+    Raises FileError if the header breaks the rules, or the voxels are elsewhere or of another number.
     """
     kind = next(suffix for suffix in READERS if path.name.lower().endswith(suffix))
     found = READERS[kind](path, text_fields(path))
@@ -61,10 +58,7 @@ def header_beside(path: Path) -> Path | None:
 def text_fields(path: Path) -> dict[str, str]:
     """The lines ``name = value`` of a text by ``section/name`` in lower case; the first of a name counts.
 
-    Raises
-    ------
-    FileError
-        If the file is no text, or longer than 1 MiB.
+    Raises FileError if the file is no text, or longer than 1 MiB.
     """
     with path.open("rb") as file:
         data = file.read(MAX_HEADER_BYTES + 1)

@@ -28,12 +28,8 @@ _HEX = re.compile(r"[0-9a-f]+|[0-9A-F]+")
 class SliceSeries:
     """Images that are slices of one scan.
 
-    Parameters
-    ----------
-    name
-        Of the files, with ``#`` in place of the number that counts them.
-    files, numbers
-        Names and their numbers, in the order of the latter.
+    ``name``: of the files, with ``#`` in place of the number that counts them. ``files``, ``numbers``: names
+    and their numbers, in the order of the latter.
     """
 
     name: str
@@ -57,10 +53,7 @@ class SliceSeries:
     def in_place(self, allow_gaps: bool) -> list[str | None]:
         """Names of the slices from the first to the last, None for those that are absent.
 
-        Raises
-        ------
-        FileError
-            If some are, and that is not allowed, or two have one number.
+        Raises FileError if some are, and that is not allowed, or two have one number.
         """
         for (first, second), (a, b) in zip(pairwise(self.files), pairwise(self.numbers), strict=True):
             if a == b:
@@ -210,10 +203,7 @@ def is_zarr(folder: Path) -> bool:
 def zarr_names(folder: Path) -> tuple[str, ...]:
     """All files below a folder of Zarr, relative to it, in the order of their names; links are not followed.
 
-    Raises
-    ------
-    FileError
-        If there are more than a million.
+    Raises FileError if there are more than a million.
     """
     found: list[str] = []
     for place, _, names in os.walk(folder):

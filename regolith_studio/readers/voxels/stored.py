@@ -23,21 +23,12 @@ BLOCK = 1 << 25
 class PlainVoxels:
     """Slices read straight from their place in the file.
 
-    Parameters
-    ----------
-    path, offset
-        The file, and the byte that the first voxel begins at.
-    header
-        Shape and type of the voxels in memory.
-    stored
-        The type in the file, with its byte order.
-    slices_last
-        Whether z is the index that runs fastest (Fortran's order of a [z, y, x] array).
+    - ``path``, ``offset``: the file, and the byte that the first voxel begins at.
+    - ``header``: shape and type of the voxels in memory.
+    - ``stored``: the type in the file, with its byte order.
+    - ``slices_last``: whether z is the index that runs fastest (Fortran's order of a [z, y, x] array).
 
-    Raises
-    ------
-    FileError
-        If the file is too short for its voxels.
+    Raises FileError if the file is too short for its voxels.
     """
 
     path: Path
@@ -97,17 +88,10 @@ class PlainVoxels:
 class TransposedVoxels:
     """Plain voxels in another order than slices, rows, columns or its reverse.
 
-    Parameters
-    ----------
-    path, offset, header, stored
-        As for :class:`PlainVoxels`.
-    order
-        The axes, that which runs slowest first: ``yxz``.
+    ``path``, ``offset``, ``header``, ``stored``: as for :class:`PlainVoxels`. ``order``: the axes, that
+    which runs slowest first: ``yxz``.
 
-    Raises
-    ------
-    FileError
-        If the file is too short for its voxels.
+    Raises FileError if the file is too short for its voxels.
     """
 
     path: Path
@@ -134,10 +118,7 @@ class TransposedVoxels:
 def exact_voxels(path: Path, offset: int, header: VoxelHeader, stored: np.dtype[Any]) -> PlainVoxels:
     """The voxels of a file that has just as many bytes as they need.
 
-    Raises
-    ------
-    FileError
-        If it has others: then the shape or the type is not what it is.
+    Raises FileError if it has others: then the shape or the type is not what it is.
     """
     there, needed = path.stat().st_size, offset + math.prod(header.shape) * stored.itemsize
     if there != needed:
@@ -167,10 +148,7 @@ _GZIP_OR_ZLIB = 47
 class InflatedStream:
     """The bytes of a gzip or zlib stream in a file, a piece at a time.
 
-    Parameters
-    ----------
-    path, offset
-        The file, and where in it the stream begins.
+    ``path``, ``offset``: the file, and where in it the stream begins.
     """
 
     def __init__(self, path: Path, offset: int = 0) -> None:
@@ -183,10 +161,7 @@ class InflatedStream:
     def readinto(self, view: memoryview) -> None:
         """Fill the view.
 
-        Raises
-        ------
-        FileError
-            If the stream is broken or ends before.
+        Raises FileError if the stream is broken or ends before.
         """
         while view:
             piece = self._piece(len(view))
@@ -201,10 +176,7 @@ class InflatedStream:
     def check_end(self) -> None:
         """Verify the checksums after the last byte; what follows the voxels is unpacked for that.
 
-        Raises
-        ------
-        FileError
-            If it is wrong or missing.
+        Raises FileError if it is wrong or missing.
         """
         if not self._inflater.eof:
             while self._piece(_CHUNK, may_end=True):
@@ -248,18 +220,11 @@ class InflatedStream:
 class DeflatedVoxels:
     """Slices of a gzip or zlib stream; reading backwards starts again at the beginning.
 
-    Parameters
-    ----------
-    path, start
-        The file, and where in it the stream begins.
-    offset
-        Bytes of the unpacked stream before the first voxel.
-    header
-        Shape and type of the voxels in memory.
-    stored
-        The type in the file, with its byte order.
-    open_stream
-        What unpacks the stream, from the file and the stream's place in it.
+    - ``path``, ``start``: the file, and where in it the stream begins.
+    - ``offset``: bytes of the unpacked stream before the first voxel.
+    - ``header``: shape and type of the voxels in memory.
+    - ``stored``: the type in the file, with its byte order.
+    - ``open_stream``: what unpacks the stream, from the file and the stream's place in it.
     """
 
     path: Path
@@ -303,10 +268,7 @@ MAX_NAME_LENGTH = 255
 def beside(path: Path, name: str) -> Path:
     """The file of that name in the folder of `path`.
 
-    Raises
-    ------
-    FileError
-        If the name leads elsewhere, or there is no such regular file.
+    Raises FileError if the name leads elsewhere, or there is no such regular file.
     """
     shown = printable(name)[:60]
     if not _is_bare(name):
@@ -331,10 +293,7 @@ def _is_bare(name: str) -> bool:
 def start_before_end(path: Path, header: VoxelHeader, stored: np.dtype[np.generic]) -> int:
     """The byte at which voxels begin that end with their file.
 
-    Raises
-    ------
-    FileError
-        If the file is shorter than they are.
+    Raises FileError if the file is shorter than they are.
     """
     start = path.stat().st_size - math.prod(header.shape) * stored.itemsize
     if start < 0:

@@ -51,10 +51,7 @@ def open_tiff_file(path: Path) -> Any:
     returns the pages that it has found: a truncated file would become a smaller volume. Hence the log is
     checked.
 
-    Raises
-    ------
-    FileError
-        If it is not a TIFF file, or tifffile has logged an error.
+    Raises FileError if it is not a TIFF file, or tifffile has logged an error.
     """
     import tifffile
 
@@ -87,10 +84,7 @@ def check_page(page: Any, size: int, number: int) -> None:
 
     tifffile fills missing pixels with zeros.
 
-    Raises
-    ------
-    FileError
-        If not, naming the page by its `number`, counted from 0.
+    Raises FileError if not, naming the page by its `number`, counted from 0.
     """
     for place, count in zip(page.dataoffsets, page.databytecounts, strict=False):
         if place + count > size:
@@ -104,10 +98,7 @@ def check_page(page: Any, size: int, number: int) -> None:
 def stated_size(file: Any) -> Stated:
     """Edges along x, y and z in a unit, the unit, and notes; None where the file does not state it.
 
-    Parameters
-    ----------
-    file
-        An open ``tifffile.TiffFile``.
+    ``file``: an open ``tifffile.TiffFile``.
     """
     page = file.pages.first
     description = str(page.description or "")[:_MAX_DESCRIPTION]

@@ -23,10 +23,7 @@ MODELS: "Registry[ShapeModel]" = Registry(__name__, "MODEL", "shape_models", ord
 def model_settings(model: str = DEFAULT_MODEL, values: Mapping[str, Any] | None = None) -> Any:
     """The ``Settings`` of a model; what is not given is as the model has it.
 
-    Raises
-    ------
-    InputError
-        If there is no such model or setting, or a value is of the wrong kind.
+    Raises InputError if there is no such model or setting, or a value is of the wrong kind.
     """
     if model not in MODELS:
         raise InputError(f"There is no model called {model!r}; the models are {', '.join(MODELS)}.")

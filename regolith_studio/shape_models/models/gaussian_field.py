@@ -39,19 +39,11 @@ class GaussianField(RejectionSampler):
 
     The draws that are kept are larger and rounder than the field (:meth:`rejection_bias`).
 
-    Parameters
-    ----------
-    mean
-        mu, the mean of c_00.
-    spectrum
-        A_0 .. A_l_max, shape (l_max + 1,): variance of c_00, and of each c_lm.
-    unit
-        Length unit of the sample.
+    - ``mean``: mu, the mean of c_00.
+    - ``spectrum``: A_0 .. A_l_max, shape (l_max + 1,): variance of c_00, and of each c_lm.
+    - ``unit``: length unit of the sample.
 
-    Raises
-    ------
-    InputError
-        If mu is not positive or a variance is negative or not finite.
+    Raises InputError if mu is not positive or a variance is negative or not finite.
     """
 
     mean: float
@@ -107,10 +99,7 @@ class GaussianRadiusModel:
     def fit(self, sample: Sample, settings: GaussianFieldSettings | None = None) -> GaussianField:
         """The field of a sample; the mean of c_lm for l >= 1 is zero by the model and not subtracted.
 
-        Raises
-        ------
-        InputError
-            If the sample is not expanded to the settings' l_max.
+        Raises InputError if the sample is not expanded to the settings' l_max.
         """
         rows = sample.truncated((settings or GaussianFieldSettings()).l_max).coefficients
         l_max = round(rows.shape[1] ** 0.5) - 1

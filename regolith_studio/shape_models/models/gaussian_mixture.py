@@ -33,27 +33,15 @@ KEY = "gaussian_mixture"
 class GaussianMixture(NamedComponents, RejectionSampler):
     """A fitted mixture, the component with the largest share first.
 
-    Parameters
-    ----------
-    weights
-        Shares by number, before draws are thrown away, shape (k,).
-    means
-        mu_k, shape (k,).
-    spectra
-        A_lk, with the variance of c_00 as A_0k, shape (k, l_max + 1).
-    unit
-        Length unit of the sample.
-    bic
-        Criterion for 1, 2, ... components; empty if the number was given.
-    names
-        Of the components, for display.
-    labels
-        Most probable component of each measured particle, shape (n,).
+    - ``weights``: shares by number, before draws are thrown away, shape (k,).
+    - ``means``: mu_k, shape (k,).
+    - ``spectra``: a_lk, with the variance of c_00 as A_0k, shape (k, l_max + 1).
+    - ``unit``: length unit of the sample.
+    - ``bic``: criterion for 1, 2, ... components; empty if the number was given.
+    - ``names``: of the components, for display.
+    - ``labels``: most probable component of each measured particle, shape (n,).
 
-    Raises
-    ------
-    InputError
-        If a share or variance is negative, or there are not as many names as components.
+    Raises InputError if a share or variance is negative, or there are not as many names as components.
     """
 
     weights: FloatArray
@@ -107,10 +95,8 @@ class GaussianMixtureModel:
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> GaussianMixture:
         """The mixture of a sample.
 
-        Raises
-        ------
-        InputError
-            If there are fewer than four particles for each component, or the sample is not expanded so far.
+        Raises InputError if there are fewer than four particles for each component, or the sample is not
+        expanded so far.
         """
         chosen = settings or MixtureSettings()
         rows = sample.truncated(chosen.l_max).coefficients

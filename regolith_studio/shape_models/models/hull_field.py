@@ -88,22 +88,15 @@ class HullFieldSettings:
 class HullField(SizedSampler):
     """A fitted hull field.
 
-    Parameters
-    ----------
-    numbers
-        Joint distribution of the columns of :mod:`~regolith_studio.shape_models.shape_features`, as measured.
-    sizes
-        Law of equivalent radii.
-    spectrum
-        A_l of ln r of the measured particles, shape (l_max + 1,), A_0 = 0; for display only.
-    unit
-        Length unit of the sample.
-    shift, spread
-        Features asked for are median + shift + spread (drawn - median), shapes (l_max + 4,).
-    faceting
-        Share of the distance to its hull by which the rough field is moved, 0 to 1.
-    fine
-        The degrees above :data:`HULL_DEGREE`, where there are any.
+    - ``numbers``: joint distribution of the columns of :mod:`~regolith_studio.shape_models.shape_features`,
+      as measured.
+    - ``sizes``: law of equivalent radii.
+    - ``spectrum``: a_l of ln r of the measured particles, shape (l_max + 1,), A_0 = 0; for display only.
+    - ``unit``: length unit of the sample.
+    - ``shift``, ``spread``: features asked for are median + shift + spread (drawn - median), shapes (l_max +
+      4,).
+    - ``faceting``: share of the distance to its hull by which the rough field is moved, 0 to 1.
+    - ``fine``: the degrees above :data:`HULL_DEGREE`, where there are any.
     """
 
     numbers: GaussianCopula
@@ -148,10 +141,7 @@ class HullField(SizedSampler):
     def truncated(self, l_max: int) -> "HullField":
         """The field without the degrees above `l_max`.
 
-        Raises
-        ------
-        InputError
-            If `l_max` is beyond the field, or below the degree of what is moved to its hull.
+        Raises InputError if `l_max` is beyond the field, or below the degree of what is moved to its hull.
         """
         if not self._base <= l_max <= self.l_max:
             right = f"from {self._base} to {self.l_max}" if self.fine else f"= {self.l_max} only"
@@ -246,11 +236,8 @@ class HullFieldModel:
     def fit(self, sample: Sample, settings: HullFieldSettings | None = None) -> HullField:
         """The field of a sample.
 
-        Raises
-        ------
-        InputError
-            If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
-            a positive radius.
+        Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
+        particles have a positive radius.
         """
         chosen = settings or HullFieldSettings(min(DEGREES[1], sample.l_max))
         if chosen.size_law not in SIZE_LAWS:

@@ -56,26 +56,15 @@ class LogFieldSettings:
 class LogField(SizedSampler):
     """The field's numbers.
 
-    Parameters
-    ----------
-    spectrum
-        A_l of ln r, shape (l_max + 1,), A_0 = 0; at `reference_radius`.
-    sizes
-        Law of equivalent radii.
-    unit
-        Length unit of the sample.
-    reference_radius
-        Where the spectrum holds if it depends on size.
-    exponents
-        A_l is proportional to r_eq to this power, shape (l_max + 1,); zero for none.
-    powers, radii
-        Sum of squares per degree (n, l_max + 1) and equivalent radius (n,) of the measured particles,
-        ascending in size, if the spectrum is resampled.
+    - ``spectrum``: a_l of ln r, shape (l_max + 1,), A_0 = 0; at `reference_radius`.
+    - ``sizes``: law of equivalent radii.
+    - ``unit``: length unit of the sample.
+    - ``reference_radius``: where the spectrum holds if it depends on size.
+    - ``exponents``: a_l is proportional to r_eq to this power, shape (l_max + 1,); zero for none.
+    - ``powers``, ``radii``: sum of squares per degree (n, l_max + 1) and equivalent radius (n,) of the
+      measured particles, ascending in size, if the spectrum is resampled.
 
-    Raises
-    ------
-    InputError
-        If a variance is negative or not finite, or the numbers do not go together.
+    Raises InputError if a variance is negative or not finite, or the numbers do not go together.
     """
 
     spectrum: FloatArray
@@ -164,11 +153,8 @@ class LogFieldModel:
     def fit(self, sample: Sample, settings: LogFieldSettings | None = None) -> LogField:
         """The field of a sample.
 
-        Raises
-        ------
-        InputError
-            If a setting is unknown, the sample is not expanded so far, or fewer than two particles have a
-            positive radius.
+        Raises InputError if a setting is unknown, the sample is not expanded so far, or fewer than two
+        particles have a positive radius.
         """
         chosen = settings or LogFieldSettings()
         if chosen.spectrum not in SPECTRA:

@@ -32,20 +32,12 @@ KEY = "mixture_field"
 class MixtureField(NamedComponents, SizedSampler):
     """A fitted mixture, the component with the largest share first.
 
-    Parameters
-    ----------
-    sizes
-        Log-normal laws of the components with their shares by number.
-    spectra
-        A_l of ln r, shape (k, l_max + 1).
-    unit
-        Length unit of the sample.
-    bic
-        Criterion for 1, 2, ... components; empty if the number was given.
-    names
-        Of the components, for display.
-    labels
-        Most probable component of each measured particle that was used, shape (n,).
+    - ``sizes``: log-normal laws of the components with their shares by number.
+    - ``spectra``: a_l of ln r, shape (k, l_max + 1).
+    - ``unit``: length unit of the sample.
+    - ``bic``: criterion for 1, 2, ... components; empty if the number was given.
+    - ``names``: of the components, for display.
+    - ``labels``: most probable component of each measured particle that was used, shape (n,).
     """
 
     sizes: LogNormalSizes
@@ -96,11 +88,8 @@ class MixtureFieldModel:
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> MixtureField:
         """The mixture of a sample.
 
-        Raises
-        ------
-        InputError
-            If there are fewer than four particles for each component, the sample is not expanded so far, or
-            fewer than two particles have a positive radius.
+        Raises InputError if there are fewer than four particles for each component, the sample is not
+        expanded so far, or fewer than two particles have a positive radius.
         """
         chosen = settings or MixtureSettings()
         shapes = log_shapes(sample.truncated(chosen.l_max))

@@ -64,21 +64,13 @@ _BATCH = 250
 class SurfaceForms:
     """Surfaces of n particles on their spheres of inertia, and the forms that they had.
 
-    Parameters
-    ----------
-    vertices
-        On the sphere of inertia, in the frame of the principal axes, shape (n, 642, 3).
-    to_sphere
-        Linear maps of the particles there, shape (n, 3, 3).
-    from_frame
-        Principal axes as columns, shape (n, 3, 3): maps back from the frame of the axes.
-    forms
-        Along the principal axes, with a product of one, shape (n, 3).
-    features
-        As :func:`mesh_features`, shape (n, 3).
-    area_factors
-        Sphericity times the area of a mesh of unit volume, shape (n,): what the coarse mesh does not see of
-        the surface stays the same when it is stretched.
+    - ``vertices``: on the sphere of inertia, in the frame of the principal axes, shape (n, 642, 3).
+    - ``to_sphere``: linear maps of the particles there, shape (n, 3, 3).
+    - ``from_frame``: principal axes as columns, shape (n, 3, 3): maps back from the frame of the axes.
+    - ``forms``: along the principal axes, with a product of one, shape (n, 3).
+    - ``features``: as :func:`mesh_features`, shape (n, 3).
+    - ``area_factors``: sphericity times the area of a mesh of unit volume, shape (n,): what the coarse mesh
+      does not see of the surface stays the same when it is stretched.
     """
 
     vertices: Floats
@@ -271,11 +263,8 @@ class RecombinedSettings(SurfaceSettings):
 class Recombined(SurfaceSampler):
     """The measured particles and what is asked for to draw others like them.
 
-    Parameters
-    ----------
-    offsets, spreads
-        What is asked for of the features of :class:`SurfaceForms`: mean + offset + spread
-        (measured - mean), shapes (3,); zeros and ones if ``None``.
+    ``offsets``, ``spreads``: what is asked for of the features of :class:`SurfaceForms`: mean + offset +
+    spread (measured - mean), shapes (3,); zeros and ones if ``None``.
     """
 
     offsets: FloatArray | None = None
@@ -382,11 +371,8 @@ class RecombinedModel:
     def fit(self, sample: Sample, settings: RecombinedSettings | None = None) -> Recombined:
         """The model of a sample.
 
-        Raises
-        ------
-        InputError
-            If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
-            a positive radius.
+        Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
+        particles have a positive radius.
         """
         chosen = settings or RecombinedSettings(min(30, sample.l_max))
         if chosen.n_candidates < 1:

@@ -173,11 +173,8 @@ class SampleMatchedModel:
     def fit(self, sample: Sample, settings: SampleMatchedSettings | None = None) -> SampleMatched:
         """The model of a sample; better the more degrees above the settings' l_max the sample has.
 
-        Raises
-        ------
-        InputError
-            If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
-            a positive radius.
+        Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
+        particles have a positive radius.
         """
         chosen = settings or SampleMatchedSettings(min(30, sample.l_max))
         if not 0 <= chosen.turn <= 2:

@@ -139,10 +139,7 @@ def union_picture(compound: ConvexCompound, reach: float) -> FloatArray:
     A line towards the eye leaves each part through one plane, so that the facet that is seen is that of the
     part that it leaves last. Lines between facets are drawn where neighbouring samples see different ones.
 
-    Parameters
-    ----------
-    reach
-        Half the width of the picture, upper row first.
+    ``reach``: half the width of the picture, upper row first.
     """
     n = PIXELS * SAMPLES
     at = reach * (2.0 * (np.arange(n) + 0.5) / n - 1.0)

@@ -47,10 +47,7 @@ class Box3dEngine(SteppedEngine):
     def solver(self, prepared: PreparedCase, settings: Box3dSettings) -> Solver:
         """Box3D with the particles of a case.
 
-        Raises
-        ------
-        InputError
-            If the case has what the solver does not represent.
+        Raises InputError if the case has what the solver does not represent.
         """
         if prepared.surface_energy > 0.0:
             raise InputError("Box3D has no cohesion; take LAMMPS, or cohesion none.")

@@ -17,28 +17,17 @@ from regolith_studio.messages import N_
 class LammpsSettings:
     """Numerics; times in sqrt(d/g).
 
-    Parameters
-    ----------
-    spheres
-        Overlapping spheres per polyhedron.
-    max_error
-        Largest Jaccard distance between a polyhedron and its spheres; the fewest spheres that reach it take
-        the place of `spheres`. 0: `spheres`.
-    max_stiffness
-        Maximum of Young's modulus over rho g d: the real one would need millions of steps. 0: no limit.
-    step_share
-        Time step as a share of Rayleigh's time of the smallest particle.
-    rest
-        Time after the lift.
-    snapshots
-        Number of snapshots of a run.
-    restarts
-        Restarts from a snapshot with half the step, where particles fly apart.
+    - ``spheres``: overlapping spheres per polyhedron.
+    - ``max_error``: largest Jaccard distance between a polyhedron and its spheres; the fewest spheres that
+      reach it take the place of `spheres`. 0: `spheres`.
+    - ``max_stiffness``: maximum of Young's modulus over rho g d: the real one would need millions of steps.
+      0: no limit.
+    - ``step_share``: time step as a share of Rayleigh's time of the smallest particle.
+    - ``rest``: time after the lift.
+    - ``snapshots``: number of snapshots of a run.
+    - ``restarts``: restarts from a snapshot with half the step, where particles fly apart.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     spheres: int = field(

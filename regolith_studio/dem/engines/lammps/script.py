@@ -37,14 +37,9 @@ first."""
 class ClumpShape:
     """One unit-volume shape as spheres.
 
-    Parameters
-    ----------
-    spheres
-        Rows x, y, z, r about the centroid, shape (k, 4).
-    inertia
-        Of the shape at density 1 about its centroid, shape (3, 3).
-    errors
-        Of the union of the spheres; mass, centre and inertia are the shape's all the same.
+    - ``spheres``: rows x, y, z, r about the centroid, shape (k, 4).
+    - ``inertia``: of the shape at density 1 about its centroid, shape (3, 3).
+    - ``errors``: of the union of the spheres; mass, centre and inertia are the shape's all the same.
     """
 
     spheres: FloatArray
@@ -56,16 +51,10 @@ class ClumpShape:
 class Clumps:
     """All particles where a simulation begins; lengths in mean diameters, density 1.
 
-    Parameters
-    ----------
-    shapes
-        One a class.
-    centres, turns
-        Of the particles: shape (n, 3), and rotations.
-    scales
-        Factor from the unit-volume shape to each particle, shape (n,).
-    class_index
-        Shape (n,).
+    - ``shapes``: one a class.
+    - ``centres``, ``turns``: of the particles: shape (n, 3), and rotations.
+    - ``scales``: factor from the unit-volume shape to each particle, shape (n,).
+    - ``class_index``: shape (n,).
     """
 
     shapes: tuple[ClumpShape, ...]
@@ -124,10 +113,7 @@ def clumps_of(prepared: PreparedCase, count: int, max_error: float = 0.0) -> Clu
 def clump_shape(parts: Sequence[FloatArray], count: int, max_error: float = 0.0) -> ClumpShape:
     """A unit-volume shape as spheres: `count`, or as many as a Jaccard distance above 0 needs.
 
-    Parameters
-    ----------
-    parts
-        Vertices of its convex parts, each of shape (k, 3); spheres fill their union.
+    ``parts``: vertices of its convex parts, each of shape (k, 3); spheres fill their union.
     """
     places = np.array([part.mean(axis=0) if len(parts) > 1 else np.zeros(3) for part in parts])
     solids = tuple(_solid(part - place) for part, place in zip(parts, places, strict=True))
@@ -157,18 +143,11 @@ SETTLE = 8.0
 class Schedule:
     """Times of the phases in sqrt(d/g), and the step.
 
-    Parameters
-    ----------
-    step
-        Of the integration.
-    fill, settle, lift, rest
-        Durations.
-    speed
-        Of the cylinder, in sqrt(g d).
-    picture
-        Steps between two snapshots.
-    start
-        Time that earlier attempts have done; steps count from there.
+    - ``step``: of the integration.
+    - ``fill``, ``settle``, ``lift``, ``rest``: durations.
+    - ``speed``: of the cylinder, in sqrt(g d).
+    - ``picture``: steps between two snapshots.
+    - ``start``: time that earlier attempts have done; steps count from there.
     """
 
     step: float

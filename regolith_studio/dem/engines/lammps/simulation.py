@@ -47,14 +47,9 @@ class FlewApartError(RegolithError):
 class _State:
     """All bodies at one time: to go on from.
 
-    Parameters
-    ----------
-    time
-        In sqrt(d/g).
-    points, turns
-        Centres, shape (n, 3), and rotations.
-    motion
-        Velocity and angular momentum, shape (n, 6).
+    - ``time``: in sqrt(d/g).
+    - ``points``, ``turns``: centres, shape (n, 3), and rotations.
+    - ``motion``: velocity and angular momentum, shape (n, 6).
     """
 
     time: float
@@ -95,10 +90,8 @@ class _Run:
 def simulate(prepared: PreparedCase, settings: LammpsSettings) -> Generator[Snapshot, None, SimulationResult]:
     """Write the input, run the program, read its snapshots; go on from the last where particles fly apart.
 
-    Raises
-    ------
-    RegolithError
-        If LAMMPS ends before its time, with its own last error, or particles fly apart too often.
+    Raises RegolithError if LAMMPS ends before its time, with its own last error, or particles fly apart too
+    often.
     """
     clumps = clumps_of(prepared, settings.spheres, settings.max_error)
     length = prepared.mean_diameter
@@ -229,10 +222,7 @@ def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
 def read_bodies(path: Path) -> FloatArray:
     """Rows of a dump of bodies: number, x, y, z, quaternion, velocity, angular momentum; by their numbers.
 
-    Raises
-    ------
-    FlewApartError
-        If bodies are missing.
+    Raises FlewApartError if bodies are missing.
     """
     lines = path.read_text().splitlines()
     count = int(lines[3])

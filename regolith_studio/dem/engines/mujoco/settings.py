@@ -11,19 +11,11 @@ from regolith_studio.messages import N_
 class MujocoSettings(LiftingSettings):
     """Numerics of the constraint solver; times in sqrt(d/g).
 
-    Parameters
-    ----------
-    time_step
-        Of the integration.
-    contact_steps
-        Time constant of a contact in time steps: the softness of the constraints.
-    iterations, tolerance
-        Of the conjugate-gradient solver.
+    - ``time_step``: of the integration.
+    - ``contact_steps``: time constant of a contact in time steps: the softness of the constraints.
+    - ``iterations``, ``tolerance``: of the conjugate-gradient solver.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     time_step: float = field(

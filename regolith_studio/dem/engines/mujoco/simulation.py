@@ -39,14 +39,9 @@ POINTS_PER_PAIR = 1.6
 class BuiltModel:
     """A compiled model.
 
-    Parameters
-    ----------
-    model
-        MuJoCo's.
-    walls
-        Identifiers of the walls' geoms.
-    top
-        Height of the highest particle at the start.
+    - ``model``: MuJoCo's.
+    - ``walls``: identifiers of the walls' geoms.
+    - ``top``: height of the highest particle at the start.
     """
 
     model: mujoco.MjModel

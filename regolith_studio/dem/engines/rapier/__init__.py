@@ -50,10 +50,7 @@ class RapierEngine(SteppedEngine):
     def solver(self, prepared: PreparedCase, settings: RapierSettings) -> Solver:
         """Rapier with the particles of a case.
 
-        Raises
-        ------
-        InputError
-            If the case has what the solver does not represent.
+        Raises InputError if the case has what the solver does not represent.
         """
         if prepared.surface_energy > 0.0:
             raise InputError("Rapier has no cohesion; take LAMMPS, or cohesion none.")

@@ -11,17 +11,10 @@ from regolith_studio.messages import N_
 class RapierSettings(LiftingSettings):
     """Numerics of the contact solver; times in sqrt(d/g).
 
-    Parameters
-    ----------
-    time_step
-        Between two searches for contacts; halved once or twice while particles move fast.
-    iterations
-        Small steps of the solver in a time step.
+    ``time_step``: between two searches for contacts; halved once or twice while particles move fast.
+    ``iterations``: small steps of the solver in a time step.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     time_step: float = field(

@@ -242,10 +242,7 @@ def rounded_cores(prepared: PreparedCase) -> tuple[Parts, ...]:
 
     None of spheres.
 
-    Raises
-    ------
-    InputError
-        If a part is thinner than its rounded edges.
+    Raises InputError if a part is thinner than its rounded edges.
     """
     if prepared.case.shapes == "spheres":
         return ()
@@ -260,10 +257,7 @@ def inner_parallel_body(vertices: FloatArray, distance: float) -> FloatArray:
 
     With a ball of this radius added (Minkowski), it has the planes of the polyhedron and rounded edges.
 
-    Raises
-    ------
-    InputError
-        If nothing is left of it.
+    Raises InputError if nothing is left of it.
     """
     planes = np.unique(np.round(ConvexHull(vertices).equations, 9), axis=0)
     planes[:, 3] += distance

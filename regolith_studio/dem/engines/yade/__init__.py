@@ -53,10 +53,7 @@ class YadeEngine:
     ) -> Generator[Snapshot, None, SimulationResult]:
         """Fill, settle, lift, rest.
 
-        Raises
-        ------
-        InputError
-            If the case has what YADE's law for polyhedra does not know.
+        Raises InputError if the case has what YADE's law for polyhedra does not know.
         """
         from regolith_studio.dem.engines.yade.simulation import simulate
 

@@ -17,30 +17,18 @@ from regolith_studio.resources import resource
 class YadeSettings:
     """Numerics; times in sqrt(d/g).
 
-    Parameters
-    ----------
-    stiffness
-        Force by overlapping volume, in m g / d^3.
-    step_share
-        Time step as a share of the time in which the smallest particle would swing on a flat contact.
-    damping
-        YADE's local damping: the share by which every accelerating force is reduced.
-    n_segments
-        Number of flat segments of the cylinder.
-    max_fill_speed
-        Speed limit during filling, in sqrt(g d).
-    rest_energy, rest_time, max_rest_time
-        Mean kinetic energy of a particle in m g d below which a heap is at rest, the time for which it must
-        stay below, and the maximum time of waiting for it.
-    restarts
-        Maximum number of restarts from the last snapshot after a crash of YADE.
-    snapshots
-        Number of snapshots of a run.
+    - ``stiffness``: force by overlapping volume, in m g / d^3.
+    - ``step_share``: time step as a share of the time in which the smallest particle would swing on a flat
+      contact.
+    - ``damping``: YADE's local damping: the share by which every accelerating force is reduced.
+    - ``n_segments``: number of flat segments of the cylinder.
+    - ``max_fill_speed``: speed limit during filling, in sqrt(g d).
+    - ``rest_energy``, ``rest_time``, ``max_rest_time``: mean kinetic energy of a particle in m g d below
+      which a heap is at rest, the time for which it must stay below, and the maximum time of waiting for it.
+    - ``restarts``: maximum number of restarts from the last snapshot after a crash of YADE.
+    - ``snapshots``: number of snapshots of a run.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     stiffness: float = field(

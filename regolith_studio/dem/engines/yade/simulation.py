@@ -47,16 +47,11 @@ once whichever way a contact slides (its law keeps one shear force for all conta
 class YadeState:
     """One state written by YADE, in mean diameters and sqrt(d/g); energies in m g d.
 
-    Parameters
-    ----------
-    number, phase, time, rim, steps
-        Which snapshot it is, and where the test stands.
-    kinetic, potential
-        Mean energies of a particle.
-    last, at_rest
-        Whether the test is over, and whether it ended at rest.
-    rows
-        Place, turn (w, x, y, z), velocity and spin of each particle in the solver's units, shape (n, 13).
+    - ``number``, ``phase``, ``time``, ``rim``, ``steps``: which snapshot it is, and where the test stands.
+    - ``kinetic``, ``potential``: mean energies of a particle.
+    - ``last``, ``at_rest``: whether the test is over, and whether it ended at rest.
+    - ``rows``: place, turn (w, x, y, z), velocity and spin of each particle in the solver's units, shape (n,
+      13).
     """
 
     number: int
@@ -76,12 +71,8 @@ def input_document(
 ) -> dict[str, Any]:
     """Content of the input file: from the initial state, or from the last state before a crash.
 
-    Parameters
-    ----------
-    duration
-        Expected, in sqrt(d/g); sets the interval of the snapshots.
-    after
-        The last state of a resumed run.
+    ``duration``: expected, in sqrt(d/g); sets the interval of the snapshots. ``after``: the last state of a
+    resumed run.
     """
     case = prepared.case
     contact, test = case.contact, case.test
@@ -162,10 +153,7 @@ def _particles(prepared: PreparedCase, after: YadeState | None) -> list[dict[str
 def read_yade_state(path: Path, count: int) -> YadeState:
     """A state that YADE wrote.
 
-    Raises
-    ------
-    RegolithError
-        If particles were lost on the way.
+    Raises RegolithError if particles were lost on the way.
     """
     found = json.loads(path.read_text("utf-8"))
     rows = np.asarray(found["particles"], dtype=np.float64)
@@ -210,10 +198,7 @@ class _Run:
 def simulate(prepared: PreparedCase, settings: YadeSettings) -> Generator[Snapshot, None, SimulationResult]:
     """Write the input, run YADE, read its states; after a crash continue from the last one.
 
-    Raises
-    ------
-    RegolithError
-        If YADE crashes more often than allowed, or ends before its time for another reason.
+    Raises RegolithError if YADE crashes more often than allowed, or ends before its time for another reason.
     """
     run = _Run(prepared, settings, expected_duration(prepared))
     with tempfile.TemporaryDirectory(prefix="regolith-yade-") as name:
@@ -243,13 +228,7 @@ def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, int]:
 
 
 def _handle_crash(run: _Run, code: int, folder: Path) -> None:
-    """Count a crash; raise if there were too many, before the first state, or if YADE reported an error.
-
-    Raises
-    ------
-    RegolithError
-        With YADE's own last words where it said any.
-    """
+    """Count a crash; raise if there were too many, before the first state, or if YADE reported an error."""
     run.crashes += 1
     errors = [line.strip() for line in printed_lines(folder) if re.search("Error|ERROR|FATAL", line)]
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
