@@ -162,14 +162,22 @@ def principal_axes(mesh: Mesh) -> FloatArray:
 
 
 def _in_order(vertices: FloatArray, faces: IntArray) -> Mesh:
-    """The mesh with sorted vertices; triangles begin with their first one and are sorted, too."""
+    """The mesh with sorted vertices; triangles begin with their first one and are sorted, too.
+
+    Vertices at one place are one, so that triangles that share no corners are the same particle.
+    """
+    corners, faces = np.unique(faces, return_inverse=True)
+    vertices = vertices[corners]
     order = np.lexsort(vertices.T[::-1])
+    vertices = vertices[order]
+    first = np.append(True, (vertices[1:] != vertices[:-1]).any(axis=1))
     place = np.empty(len(order), dtype=np.int64)
-    place[order] = np.arange(len(order))
-    faces = place[faces]
+    place[order] = np.cumsum(first) - 1
+    faces = place[faces.reshape(-1, 3)]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     turned = (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3
     faces = np.take_along_axis(faces, turned, axis=1)
-    return Mesh(vertices[order], faces[np.lexsort(faces.T[::-1])])
+    return Mesh(vertices[first], faces[np.lexsort(faces.T[::-1])])
 
 
 @kernel

@@ -58,6 +58,17 @@ def test_that_the_order_of_vertices_and_triangles_does_not_matter(particle: Mesh
     assert there.half_spaces.points == pytest.approx(here.half_spaces.points, rel=1e-9)
 
 
+def test_that_triangles_without_common_corners_and_unused_vertices_are_the_same_particle() -> None:
+    for particle in sample_particles():
+        mesh = particle.mesh
+        corners = np.vstack([mesh.triangles.reshape(-1, 3), 3.0 * mesh.bounds[1]])
+        soup = Mesh(corners, np.arange(3 * len(mesh.faces)).reshape(-1, 3))
+        here, there = Target.of(mesh), Target.of(soup)
+        assert np.array_equal(there.mesh.vertices, here.mesh.vertices)
+        assert np.array_equal(there.mesh.faces, here.mesh.faces)
+        assert there.descriptors == here.descriptors
+
+
 @pytest.mark.parametrize("noise", [0.06, 0.12])
 def test_that_the_overlap_of_a_rough_needle_is_that_of_the_ball_that_it_was(noise: float) -> None:
     ball, stretch = rough_ball(noise), np.array([20.0, 1.0, 1.0])
