@@ -34,7 +34,7 @@ class CoarseningSettings:
     method: str = setting(
         DEFAULT_METHOD,
         N_("Coarsening method"),
-        N_("Coarsening method: exact, annealing, quadric, or compound (a union of convex parts)."),
+        N_("Coarsening method: exact, annealing, quadric, pchs, or compound (a union of convex parts)."),
         symbol=N_("Method"),
         metavar="NAME",
     )

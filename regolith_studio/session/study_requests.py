@@ -18,6 +18,7 @@ from regolith_studio.studies.sweeps import SWEEPS, parse_values
 CHOSEN = "chosen"
 """Name of the loss whose weights are the present ones."""
 COMPOUND = "compound"
+PCHS = "pchs"
 """Name of the row of unions of convex parts that keep all descriptors."""
 
 
@@ -36,16 +37,23 @@ def compound_row(choices: Choices) -> LossVariant:
     )
 
 
+def pchs_row(choices: Choices) -> LossVariant:
+    """A baseline without a loss: fewer facets of the convex hull."""
+    settings = choices.settings if choices.method == PCHS else ()
+    return LossVariant(METHODS[PCHS].label, LossWeights.of(), PCHS, choices.facet_count, settings)
+
+
 def loss_names() -> dict[str, str]:
-    """Everything that can be a row, with its label: losses, the compound and the chosen weights."""
+    """Everything that can be a row, with its label: losses, two other methods and the chosen weights."""
     names = {name: loss.label for name, loss in losses().items()}
-    return names | {COMPOUND: METHODS[COMPOUND].label, CHOSEN: N_("Chosen weights")}
+    others = {name: METHODS[name].label for name in (COMPOUND, PCHS)}
+    return names | others | {CHOSEN: N_("Chosen weights")}
 
 
 def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[LossVariant, ...]:
     """A row for each name of :func:`loss_names`."""
     like = present_row(choices)
-    own = {CHOSEN: like, COMPOUND: compound_row(choices)}
+    own = {CHOSEN: like, COMPOUND: compound_row(choices), PCHS: pchs_row(choices)}
     return tuple(own[name] if name in own else loss_variants((name,), like)[0] for name in names)
 
 

@@ -32,6 +32,8 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     N_("sphericity"): ("sphericity",),
 }
 """Descriptors that are kept or left together when conditions are traded for overlap."""
+BASELINES = ("quadric", "pchs")
+"""Methods without a loss."""
 CONDITION_METHODS = ("exact", "compound")
 """Methods in which a weight above 0 makes a condition, so that its size alone changes little."""
 
@@ -55,13 +57,13 @@ class LossVariant:
 
     @property
     def is_baseline(self) -> bool:
-        """Whether the quadric start is the result, as in the first row of Fig. 8."""
-        return self.weights.all_zero or self.method == "quadric"
+        """Whether no loss has a part in the result, as in the first row of Fig. 8."""
+        return self.weights.all_zero or self.method in BASELINES
 
     @property
     def method_run(self) -> str:
-        """Key of the method that makes the row: of a baseline ``quadric``, whatever was named."""
-        return "quadric" if self.is_baseline else self.method
+        """Key of the method that makes the row: without weights ``quadric``, whatever was named."""
+        return "quadric" if self.weights.all_zero and self.method not in BASELINES else self.method
 
     @property
     def settings_run(self) -> tuple[tuple[str, Any], ...]:
@@ -191,7 +193,7 @@ def sensitivity_variants(
 
 def _check_factors(like: LossVariant, factors: Sequence[float]) -> None:
     if like.is_baseline:
-        raise InputError("Quadric decimation has no loss whose weights could be varied; take another method.")
+        raise InputError("A baseline has no loss whose weights could be varied; take another method.")
     for factor in factors:
         if not factor >= 0:
             raise InputError(f"A factor on a weight must be 0 or a positive number, got {factor:g}.")

@@ -2,6 +2,7 @@
 
 import itertools
 import pickle
+import sys
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from tests.coarsening.conftest import bumpy
 
 KEEP_VOLUME = LossWeights.from_preset("all").keeping(["volume"])
+OCTAHEDRON = Mesh(np.vstack([np.eye(3), -np.eye(3)]), np.empty((0, 3), dtype=np.int64)).hull
 EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 
 
@@ -141,6 +143,32 @@ def test_that_quadric_reports_its_three_readings(particle: Mesh) -> None:
     assert found.errors["volume"] == pytest.approx(found.variants["half_spaces"]["volume"], rel=1e-9)
     restored = coarsen(particle, 20, "quadric", settings={"restore_volume": True})
     assert restored.errors["volume"] < 1e-8  # of the mesh whose coordinates are rounded to 2^-26
+
+
+def test_that_the_progressive_hull_contains_the_particle_with_all_its_facets(particle: Mesh) -> None:
+    pytest.importorskip("pchs")
+    for cost in ("volume", "area"):
+        found = coarsen(particle, 20, "pchs", settings={"cost": cost})
+        assert found.n_facets == 20
+        assert found.reason is None
+        planes = found.half_spaces
+        assert planes is not None
+        heights = (particle.vertices - found.centre) @ planes.normals.T - planes.offsets
+        assert heights.max() < 1e-7 * particle.volume ** (1 / 3)
+
+
+def test_that_the_progressive_hull_of_an_octahedron_is_the_octahedron() -> None:
+    pytest.importorskip("pchs")
+    found = coarsen(OCTAHEDRON, 20, "pchs")
+    assert found.n_facets == 8
+    assert found.jaccard_distance < 1e-6
+    assert "a convex polyhedron with 8 facets itself" in str(found.reason)
+
+
+def test_that_the_progressive_hull_says_which_package_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pchs", None)
+    with pytest.raises(InputError, match="install regolith-studio with the extra pchs"):
+        coarsen(OCTAHEDRON, 8, "pchs")
 
 
 def test_that_annealing_takes_every_improvement_and_others_with_probability_t(particle: Mesh) -> None:

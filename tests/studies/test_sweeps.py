@@ -89,7 +89,7 @@ def test_that_a_loss_is_never_left_without_a_weight() -> None:
 
 @pytest.mark.parametrize("rows", [tradeoff_variants, sensitivity_variants])
 def test_that_what_cannot_be_varied_is_said(rows: Any) -> None:
-    with pytest.raises(InputError, match="Quadric decimation has no loss"):
+    with pytest.raises(InputError, match="A baseline has no loss"):
         rows(LossVariant("", LossWeights.from_preset("all"), "quadric"))
     with pytest.raises(InputError, match="0 or a positive number, got -1"):
         rows(ANNEALED, (-1.0,))

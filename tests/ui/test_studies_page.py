@@ -160,7 +160,7 @@ def test_that_the_gallery_is_saved_as_a_picture_and_as_numbers(window, wait, set
 def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(window, settled):
     page = window.go("studies")
     page.variations["tradeoff"].frame.start.click()
-    assert "Quadric decimation has no loss" in window.toast.sentence.text()
+    assert "A baseline has no loss" in window.toast.sentence.text()
     page.variations["facets"].values.setText("12, many")
     page.sweeps.start("facets")
     assert "numbers with commas" in window.toast.sentence.text()
