@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from regolith_studio.coarsening.lower_bounds import sphericity_reason
+from regolith_studio.coarsening.weights import WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.messages import N_, Message, Number, join_messages
 
@@ -24,6 +25,22 @@ MISSED = N_(
 )
 THIS_MISSES = N_("This one misses {missed}.")
 MISSED_BY = N_("{name} by {error} %")
+
+
+def kept_sentence(weights: LossWeights) -> Message:
+    """Which terms the exact methods keep with these weights, and which have a price only."""
+    kept, prices = (
+        join_messages((Message(NAMES.get(key, key)) for key in keys), ", ")
+        for keys in (
+            [key for key in WEIGHT_KEYS if key in weights.kept],
+            [key for key in WEIGHT_KEYS if weights[key] and key not in weights.kept],
+        )
+    )
+    if not weights.kept:
+        return Message(N_("The exact method keeps no descriptor."))
+    if not prices:
+        return Message(N_("The exact method keeps {kept}."), kept=kept)
+    return Message(N_("The exact method keeps {kept}; weighed: {prices}."), kept=kept, prices=prices)
 
 
 def missed_terms(

@@ -1120,8 +1120,8 @@
         <translation>Verfahren der Vergröberung</translation>
     </message>
     <message>
-        <source>Coarsening method: exact, annealing, quadric, or compound (a union of convex parts).</source>
-        <translation>Verfahren der Vergröberung: exact, annealing, quadric oder compound (eine Vereinigung konvexer Teile).</translation>
+        <source>Coarsening method: exact, annealing, quadric, pchs, or compound (a union of convex parts).</source>
+        <translation>Methode der Vergröberung: exact, annealing, quadric, pchs oder compound (eine Vereinigung konvexer Teile).</translation>
     </message>
     <message>
         <source>Coarsens this particle at several numbers of facets.</source>
@@ -1362,6 +1362,10 @@
     <message>
         <source>Corrections so far</source>
         <translation>Bisherige Korrekturen</translation>
+    </message>
+    <message>
+        <source>Cost</source>
+        <translation>Kosten</translation>
     </message>
     <message>
         <source>Coulomb friction against rolling and spinning</source>
@@ -4228,6 +4232,10 @@
         <translation>Fortschritt der Studie</translation>
     </message>
     <message>
+        <source>Progressive convex hull</source>
+        <translation>Schrittweise vereinfachte Hülle</translation>
+    </message>
+    <message>
         <source>Projects (*.regolith)</source>
         <translation>Projekte (*.regolith)</translation>
     </message>
@@ -5720,6 +5728,18 @@
         <translation>Die Fehler sinken noch bei &lt;b&gt;{count} Facetten&lt;/b&gt;, der größten Zahl hier.</translation>
     </message>
     <message>
+        <source>The exact method keeps no descriptor.</source>
+        <translation>Die exakte Methode hält keinen Deskriptor ein.</translation>
+    </message>
+    <message>
+        <source>The exact method keeps {kept}.</source>
+        <translation>Die exakte Methode hält ein: {kept}.</translation>
+    </message>
+    <message>
+        <source>The exact method keeps {kept}; weighed: {prices}.</source>
+        <translation>Die exakte Methode hält ein: {kept}; gewichtet: {prices}.</translation>
+    </message>
+    <message>
         <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
         <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}, höchstens um {most}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
     </message>
@@ -6782,6 +6802,10 @@
     <message>
         <source>and {count} more</source>
         <translation>und {count} weitere</translation>
+    </message>
+    <message>
+        <source>area</source>
+        <translation>Oberfläche</translation>
     </message>
     <message>
         <source>area of the surface</source>

@@ -6,9 +6,11 @@ import pickle
 import pytest
 
 from regolith_studio.coarsening.loss import loss
-from regolith_studio.coarsening.weights import WEIGHT_KEYS, LossWeights, presets
-from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.coarsening.reasons import kept_sentence
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
+from regolith_studio.resources import guide_folder
 
 
 def test_that_the_loss_has_the_terms_of_equation_9() -> None:
@@ -63,3 +65,26 @@ def test_that_the_rows_of_the_papers_figures_are_shipped() -> None:
 def test_that_an_unknown_preset_is_refused() -> None:
     with pytest.raises(InputError, match="no preset 'best'"):
         LossWeights.from_preset("best")
+
+
+def test_that_the_guide_says_what_each_preset_keeps() -> None:
+    symbols = {key: CATALOGUE[key].symbol for key in LOSS_KEYS} | {JACCARD: "Jaccard distance"}
+    named = {}
+    for line in guide_folder().joinpath("coarsening.md").read_text("utf-8").splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 3 and (name := cells[0].split("`")[1:2]) and name[0] in presets():
+            named[name[0]] = cells[1:]
+    wanted = {}
+    for name, preset in presets().items():
+        kept, weights = preset.weights.kept, preset.weights
+        weighed = [key for key in WEIGHT_KEYS if weights[key] and key not in kept]
+        lists = ([key for key in WEIGHT_KEYS if key in kept], weighed)
+        wanted[name] = [", ".join(symbols[key] for key in keys) or "none" for keys in lists]
+    assert named == wanted
+
+
+def test_that_a_sentence_says_what_weights_keep() -> None:
+    assert kept_sentence(LossWeights.of(volume=1)) == "The exact method keeps volume."
+    assert kept_sentence(LossWeights.of(jaccard_distance=1)) == "The exact method keeps no descriptor."
+    both = LossWeights.of(volume=1, aspect_ratio=2).keeping(["volume"])
+    assert kept_sentence(both) == "The exact method keeps volume; weighed: aspect ratio."

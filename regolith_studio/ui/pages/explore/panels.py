@@ -7,6 +7,7 @@ from typing import Any
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.reasons import kept_sentence
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
@@ -248,11 +249,12 @@ class LossPanel(QWidget):
         self.bar.show_state(self._chosen, self.is_modified())
         preset = self._known[self._chosen]
         own = self._chosen.startswith(OWN)
-        self.origin.setText(
+        origin = (
             tr("Changed from {preset}.", preset=preset.label if own else tr(preset.label))
             if self.is_modified()
             else tr(preset.origin) + "."
         )
+        self.origin.setText(f"{origin} {translate(kept_sentence(self.value()['weights']))}")
 
 
 class VerdictPanel(ResultView):
