@@ -75,7 +75,7 @@ They are multiplied by the number of processes that wait for a core, where it is
 
 QUICK = (
     "-n 40 --measure min_particles=40 --test mass=0.003 --test lift_speed=0.15 --set time_step=0.04 "
-    "--set iterations=15 --set rest_energy=2e-3 --set snapshots=12"
+    "--set iterations=15 --set rest_energy=4e-3 --set snapshots=12"
 )
 """A heap in about a second, of too few particles for an angle that means anything."""
 COMMANDS = {
@@ -293,7 +293,7 @@ def shorten_demo() -> Iterator[None]:
 
     def quick_heap(heap: Any, settings: Any) -> Any:
         test = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
-        settings = replace(settings, rest_energy=2e-3, snapshots=12)
+        settings = replace(settings, rest_energy=4e-3, snapshots=12)
         measure = EvaluationSettings(min_particles=40)
         return complete(replace(heap, test=test), settings=settings, evaluation=measure)
 

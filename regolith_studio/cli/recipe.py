@@ -199,7 +199,7 @@ def _heap(dataset: Path, folder: Path, seed: int, problems: list[str]) -> "Steps
     from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
     from regolith_studio.session.outputs.summary import HEAP_PICTURE
 
-    settings = MujocoSettings(time_step=0.04, iterations=15, rest_energy=1e-3)
+    settings = MujocoSettings(time_step=0.04, iterations=15, rest_energy=2e-3)
     case = ReposeCase(n_particles=N_HEAP, seed=seed + 1)  # the heap of seed 0 has no angle
     request = ReposeRequest(case, settings=settings)
     with _noted(problems):

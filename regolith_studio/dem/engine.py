@@ -47,7 +47,8 @@ class Availability:
 
 @dataclass(frozen=True)
 class RunChecks:
-    """Checks after a run. Overlaps in mean diameters, energies in units of m g d per particle.
+    """Checks after a run. Overlaps in mean diameters, energies in m g d per particle, with the mass m
+    of a particle of mean diameter d.
 
     - ``particles_in``, ``particles_out``: number at the beginning, and of those on or above the plate at the
       end.
@@ -131,13 +132,15 @@ class ResumableEngine(Protocol):
         ...
 
 
+MASS = np.pi / 6
+"""Of a particle of mean diameter, where that and the density are 1."""
 DEEP_OVERLAP, MAX_DEEP_CONTACTS = 0.02, 0.01
 """Overlap in mean diameters above which a contact is deep, and maximum accepted share of these at rest.
 The share does not depend on the number of particles; docs/repose.md says why these limits."""
 MAX_OVERLAP = 0.1
 """Maximum accepted overlap of any two particles at rest, in mean diameters: half the radius of the inscribed
 ball of a flat particle. What is deeper has begun to pass through another."""
-MAX_ENERGY_GAIN = 0.05
+MAX_ENERGY_GAIN = 0.1
 """Maximum accepted rise of the energy between two samples, in m g d per particle: rounding of the solver."""
 
 

@@ -13,7 +13,14 @@ from typing import Any, Protocol
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult, check_run, lowest_corners, measure_filling
+from regolith_studio.dem.engine import (
+    MASS,
+    RunChecks,
+    SimulationResult,
+    check_run,
+    lowest_corners,
+    measure_filling,
+)
 from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
@@ -52,8 +59,7 @@ class LiftingSettings:
     - ``max_fill_speed``: speed limit during filling, in sqrt(g d).
     - ``fill_friction``: share of the friction between particles that acts during filling. The smaller it is,
       the denser is the filling, and the sooner it is at rest.
-    - ``rest_energy``: mean kinetic energy of a particle, in units of its weight times d, below which a heap
-      is at rest.
+    - ``rest_energy``: mean kinetic energy of a particle in m g d below which a heap is at rest.
     - ``rest_time``: time for which it must stay below.
     - ``max_rest_time``: maximum time of waiting for rest.
     - ``snapshots``: number of snapshots of a run.
@@ -66,7 +72,7 @@ class LiftingSettings:
         default=0.5, metadata={"label": N_("Friction share while filling"), "minimum": 0.01, "maximum": 1.0}
     )
     rest_energy: float = field(
-        default=2e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+        default=4e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
     rest_time: float = field(
         default=3.0, metadata={"label": N_("Time at rest"), "minimum": 0.1, "maximum": 1000.0}
@@ -103,7 +109,7 @@ class Solver(Protocol):
         ...
 
     def energies(self) -> tuple[float, float]:
-        """Potential and kinetic energy of all particles."""
+        """Potential and kinetic energy of all particles, in units of density, g and d."""
         ...
 
     def overlaps(self) -> FloatArray:
@@ -357,7 +363,7 @@ def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Sn
         run.steps += count
         run.times[step] = run.times.get(step, 0.0) + count * step
         if run.phase in ("settle", "rest"):  # where no wall moves and no speed is limited
-            total = sum(run.solver.energies()) / len(run.prepared)
+            total = sum(mean_energies(run))
             run.energy_gain = max(run.energy_gain, total - run.energy)
             run.energy = total
         if run.solver.time >= run.next_picture:
@@ -367,14 +373,21 @@ def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Sn
             return
 
 
+def mean_energies(run: LiftingRun) -> tuple[float, float]:
+    """Potential and kinetic energy of a particle in m g d; m is the mass of one of mean diameter."""
+    potential, kinetic = run.solver.energies()
+    unit = MASS * len(run.prepared)
+    return potential / unit, kinetic / unit
+
+
 def _is_filled(run: LiftingRun) -> bool:
     """Whether no particle falls any more."""
-    return run.solver.energies()[1] / len(run.prepared) < FILLED * run.settings.rest_energy
+    return mean_energies(run)[1] < FILLED * run.settings.rest_energy
 
 
 def _is_calm(run: LiftingRun) -> bool:
     """Whether the mean kinetic energy has been small for long enough."""
-    if run.solver.energies()[1] / len(run.prepared) > run.settings.rest_energy:
+    if mean_energies(run)[1] > run.settings.rest_energy:
         run.calm_since = None
         return False
     if run.calm_since is None:
@@ -422,7 +435,7 @@ def _checks(run: LiftingRun) -> RunChecks:
         run.solver.points[:, 2],
         run.solver.overlaps(),
         energy_gain=run.energy_gain,
-        kinetic_energy=run.solver.energies()[1] / len(run.prepared),
+        kinetic_energy=mean_energies(run)[1],
         at_rest=rested,
         filling=run.fill,
         lowest=lowest_corners(run.prepared, particles_of(run)) / run.prepared.mean_diameter,

@@ -31,7 +31,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
-SHORT = {"rest_energy": 2e-3, "rest_time": 1.0, "snapshots": 20}
+SHORT = {"rest_energy": 4e-3, "rest_time": 1.0, "snapshots": 20}
 
 
 def quick(key: str) -> LiftingSettings:

@@ -52,7 +52,7 @@ from tests.dem.packings import cone
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 CASE = ReposeCase(TEST, n_particles=40, seed=1)
-QUICK = MujocoSettings(time_step=0.04, iterations=15, rest_energy=2e-3, rest_time=1.0, snapshots=20)
+QUICK = MujocoSettings(time_step=0.04, iterations=15, rest_energy=4e-3, rest_time=1.0, snapshots=20)
 ORDER = ReposeRequest(CASE, settings=QUICK, evaluation=EvaluationSettings(min_particles=40))
 COMMAND = [
     "-n",
@@ -67,7 +67,7 @@ COMMAND = [
     "lift_speed=0.15",
 ]
 COMMAND += [
-    word for each in ("time_step=0.04", "iterations=15", "rest_energy=0.002") for word in ("--set", each)
+    word for each in ("time_step=0.04", "iterations=15", "rest_energy=0.004") for word in ("--set", each)
 ]
 COMMAND += ["--set", "rest_time=1", "--set", "snapshots=20"]
 

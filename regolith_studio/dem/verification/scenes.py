@@ -6,6 +6,7 @@ from collections.abc import Generator
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from regolith_studio.dem.engine import MASS
 from regolith_studio.dem.lifting_cylinder import Solver
 from regolith_studio.dem.verification.bodies import cuboid, lowest_heights, random_polyhedron, scene
 from regolith_studio.dem.verification.lines import MeasuredLine, VerifiableEngine, timed
@@ -26,8 +27,6 @@ STEEP = 50.0
 SLIDING = 10.0
 FALL_HEIGHT, FALL_TIME, N_FALLS = 1.0, 30.0, 5
 STACKED, STACK_TIME = 5, 100.0
-MASS = np.pi / 6
-"""Of a body whose equivalent diameter and density are 1."""
 STANDS = 0.1
 """Distance by which no box of a stack that stands has moved."""
 

@@ -19,7 +19,7 @@ from regolith_studio.ui.widgets.toast import Toast
 from tests.dem.conftest import box_dataset
 from tests.dem.packings import cone
 
-QUICK = {"time_step": 0.04, "iterations": 15, "rest_energy": 2e-3, "rest_time": 1.0, "snapshots": 12}
+QUICK = {"time_step": 0.04, "iterations": 15, "rest_energy": 4e-3, "rest_time": 1.0, "snapshots": 12}
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult, check_run, measure_filling
+from regolith_studio.dem.engine import MASS, RunChecks, SimulationResult, check_run, measure_filling
 from regolith_studio.dem.engines.lammps.program import LammpsSettings, command
 from regolith_studio.dem.engines.lammps.script import (
     Clumps,
@@ -33,7 +33,7 @@ _LOST_ATOMS_ERRORS = ("missing on proc", "Lost atoms", "Out of range atoms", "No
 """Error messages of LAMMPS for particles that moved too far in one step."""
 MAX_SPEED = 2.0
 """Largest speed of a particle, in that of a fall from the top of the column."""
-REST_ENERGY = 1e-3
+REST_ENERGY = 2e-3
 """Mean kinetic energy in m g d at which a heap is at rest."""
 NEAR = 0.05
 """Mean diameters between spheres of bodies that belong to one heap."""
@@ -276,7 +276,7 @@ def _note_energies(run: _Run, folder: Path) -> None:
         if run.plan.phase(step) in ("fill", "lift"):
             before = float("inf")
         elif step in run.kinetic:
-            total = (run.kinetic[step] + potential) / len(run.prepared)
+            total = (run.kinetic[step] + potential) / (MASS * len(run.prepared))
             run.energy_gain, before = max(run.energy_gain, total - before), total
     run.potential.clear()
 
@@ -291,7 +291,7 @@ def _checks(run: _Run) -> RunChecks:
     lowest = np.full(len(points), np.inf)
     np.minimum.at(lowest, body, places[:, 2] - radius)
     heap = np.unique(bodies)
-    kinetic = float(_kinetic_energies(run.clumps, run.states[-1])[heap].sum()) / len(points)
+    kinetic = float(_kinetic_energies(run.clumps, run.states[-1])[heap].sum()) / (MASS * len(points))
     return check_run(
         points[:, 2],
         depths[depths > 0.0],
