@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from regolith_studio.cli.batch_options import BatchOptions, check_fits_memory
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
@@ -91,7 +92,16 @@ def build(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing dataset in the folder.")
     ] = False,
+    by_group: Annotated[
+        bool,
+        typer.Option(
+            "--by-group",
+            help="Write one dataset for each group, such as a size fraction, of the meshes of an archive or "
+            "folder, and a manifest with their hashes.",
+        ),
+    ] = False,
     reading: ReadingOptions,
+    batch: BatchOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -113,7 +123,18 @@ def build(
     with usage_errors():
         parse_sizes(sizes)
         chosen = RepresentativesRequest.of(representatives or 10, weighting, size_importance, seed)
+    if by_group:
+        from regolith_studio.session.recipe import Outputs
+
+        if representatives or sizes != "measured" or quality_curve is not None or name or overwrite:
+            raise typer.BadParameter(
+                "--by-group keeps every particle, so that it goes without --representatives, --sizes, "
+                "--quality-curve, --name and --overwrite."
+            )
+        outputs = Outputs(descriptors=False, meshes=False, dataset_by_group=True, summary=False)
+        batch.run(meshes, output, outputs, choices, reading, jobs, json)
     check_place(output, overwrite)
+    check_fits_memory(meshes)
     loaded = reading.read(meshes)
     if quality_curve is not None:
         population = run_with_progress(measure_population(loaded.particles, jobs))

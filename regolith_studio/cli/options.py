@@ -31,7 +31,7 @@ Meshes = Annotated[
     list[Path],
     typer.Argument(
         metavar="MESH...",
-        help="Mesh files, or folders that hold some; sample:all for the shipped ones.",
+        help="Mesh files, or folders and ZIP archives that hold some; sample:all for the shipped ones.",
         parser=mesh_path,
     ),
 ]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from regolith_studio.cli.batch_options import BatchOptions, check_fits_memory
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
@@ -16,6 +17,7 @@ from regolith_studio.cli.options import (
     Level,
     LMax,
     Meshes,
+    OptionalFolder,
     Preset,
     Seed,
     StoppingOptions,
@@ -43,6 +45,13 @@ Statistics = Annotated[
 Weighting = Annotated[
     str,
     typer.Option("--weighting", help="Weighting of the statistics: number or volume.", metavar="HOW"),
+]
+Chords = Annotated[
+    bool,
+    typer.Option(
+        "--chords",
+        help="Measure also width and thickness by chords, and Zingg's ratios of length, width and thickness.",
+    ),
 ]
 BorderWeights = Annotated[
     bool,
@@ -81,18 +90,37 @@ def describe(
     statistics: Statistics = False,
     weighting: Weighting = "number",
     border_weights: BorderWeights = True,
+    chords: Chords = False,
     csv: Csv = None,
+    output: OptionalFolder = None,
     l_max: TableDegree = None,
     reading: ReadingOptions,
+    batch: BatchOptions,
     json: Json = False,
     jobs: Jobs = 1,
 ) -> None:
-    """Measure particles: volume, area, sphericity, diameters ..., and the health of their meshes."""
+    """Measure particles: volume, area, sphericity, diameters ..., and the health of their meshes.
+
+    With --output, which large archives need, meshes are read and measured one by one; the folder gets
+    descriptors.csv, and failed.csv where something failed.
+    """
     if weighting not in ("number", "volume"):
         raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
     from regolith_studio.readers.sandbox.parent import shared_sandbox
 
     shared_sandbox().start_in_background()  # while this process still imports
+    if output is not None:
+        from regolith_studio.session.choices import Choices
+        from regolith_studio.session.recipe import Outputs
+
+        if statistics or csv is not None or l_max is not None:
+            raise typer.BadParameter("--output goes without --statistics, --csv and --l-max.")
+        outputs = Outputs(chords=chords, meshes=False, dataset=False, summary=False)
+        batch.run(meshes, output, outputs, Choices(), reading, jobs, json)
+    elif batch.resume or batch.runner != "processes":
+        raise typer.BadParameter("--resume and --runner need a folder for the results: --output DIR.")
+    check_fits_memory(meshes)
+    from regolith_studio.descriptors.catalogue import CHORD_KEYS, DEFAULT_KEYS
     from regolith_studio.jobs.particle_jobs import measure_sample
     from regolith_studio.session.outputs.measurements import described, short_table
     from regolith_studio.session.results import ParticleEntry
@@ -102,7 +130,8 @@ def describe(
         each.source is None or each.source.l_max is None for each in loaded.particles
     ):
         raise typer.BadParameter("--l-max is for tables of coefficients, and none of these files is one.")
-    facts = run_with_progress(measure_sample(loaded.particles, workers=jobs))
+    keys = (*DEFAULT_KEYS, *CHORD_KEYS) if chords else DEFAULT_KEYS
+    facts = run_with_progress(measure_sample(loaded.particles, jobs, keys))
     pairs = list(zip(loaded.particles, facts, strict=True))
     entries = [
         ParticleEntry(p.name, p, each.health, each.descriptors, visibility=each.visibility)
@@ -232,10 +261,14 @@ def coarsen(
     how: CoarseningOptions,
     reading: ReadingOptions,
     json: Json = False,
+    batch: BatchOptions,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
+    """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4).
+
+    Meshes of an archive are read and coarsened one by one; the polyhedra are in the folder "meshes".
+    """
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.coarsening_jobs import coarsen_sample
     from regolith_studio.session.outputs.coarsening import (
@@ -244,8 +277,12 @@ def coarsen(
         remarks,
         write_coarsening,
     )
+    from regolith_studio.session.recipe import Outputs
 
     choices = how.choices(preset, seed=seed, **stopping.changes)
+    if batch.asked(meshes):
+        outputs = Outputs(descriptors=False, dataset=False, summary=False)
+        batch.run(meshes, output, outputs, choices, reading, jobs, json)
     request = choices.coarsening_request
     loaded = reading.read(meshes)
     done = run_with_progress(coarsen_sample(loaded.particles, request, jobs))

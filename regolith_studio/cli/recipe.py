@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from regolith_studio.cli.batch_options import Resume
 from regolith_studio.cli.dataclass_options import option_of
 from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.generate import write_particles
@@ -32,9 +33,7 @@ def run(
     output: Folder = Path("regolith-results"),
     json: Json = False,
     jobs: Jobs = 1,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Resume an interrupted run in the output folder.")
-    ] = False,
+    resume: Resume = False,
     chunk: Annotated[
         int | None,
         typer.Option(

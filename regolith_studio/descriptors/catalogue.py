@@ -424,6 +424,9 @@ CATALOGUE: dict[str, Descriptor] = {row.key: row for row in _ROWS}
 LOSS_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if row.in_loss)
 """The paper's set D of Eq. 8 and 9: V, S, D_min, D_max, AR, CH."""
 
+CHORD_KEYS = ("width", "thickness", "width_over_length", "thickness_over_width")
+"""Costly descriptors by chords, beside the length, which is the largest Feret diameter."""
+
 DEFAULT_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if not row.costly)
 """What :func:`describe` works out unless told."""
 

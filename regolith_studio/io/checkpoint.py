@@ -106,12 +106,19 @@ class Checkpoint:
             self._connection.executemany("INSERT INTO records VALUES (?, ?, ?)", rows)
             self._connection.executemany("INSERT INTO blobs VALUES (?, ?, ?)", blobs)
 
-    def records(self) -> Iterator[CheckpointRecord]:
-        """All records by position, one in memory at a time."""
+    def records(self, blobs: bool = True) -> Iterator[CheckpointRecord]:
+        """All records by position, one in memory at a time, with their byte strings or without."""
         with _errors_of(self.path):
             rows = self._connection.execute("SELECT position, content FROM records ORDER BY position")
             for position, content in rows:
-                yield CheckpointRecord(position, json.loads(content), self._blobs(position))
+                yield CheckpointRecord(position, json.loads(content), self._blobs(position) if blobs else {})
+
+    def records_at(self, positions: Iterable[int]) -> Iterator[CheckpointRecord]:
+        """Records that are there, one in memory at a time."""
+        with _errors_of(self.path):
+            for position in positions:
+                row = self._connection.execute("SELECT content FROM records WHERE position = ?", (position,))
+                yield CheckpointRecord(position, json.loads(row.fetchone()[0]), self._blobs(position))
 
     def note(self, name: str) -> Any:
         """The value that :meth:`set_note` kept under a name, or ``None``."""

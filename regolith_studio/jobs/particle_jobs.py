@@ -101,16 +101,18 @@ class MeasuredParticle:
     visibility: StarPointVisibility | None = None
 
 
-def measure_particle(particle: Particle, box_metric: str = "exact") -> MeasuredParticle:
+def measure_particle(
+    particle: Particle, box_metric: str = "exact", keys: Sequence[str] = DEFAULT_KEYS
+) -> MeasuredParticle:
     """Health, descriptors and visibility of one particle; never raises for what is wrong with the mesh."""
-    measured: MeasuredParticle = result_of(_measuring(particle, box_metric))
+    measured: MeasuredParticle = result_of(_measuring(particle, box_metric, keys))
     return measured
 
 
-def _measuring(particle: Particle, box_metric: str) -> Steps:
+def _measuring(particle: Particle, box_metric: str, keys: Sequence[str]) -> Steps:
     """As :func:`measure_particle`; a large mesh names what is worked out before each part."""
     known = particle.repair
-    parts = 2 + len(DEFAULT_KEYS)
+    parts = 2 + len(keys)
     is_large = len(particle.mesh.faces) >= LARGE
     if is_large:
         yield Progress(0, parts, N_("Checking the mesh"))
@@ -118,7 +120,7 @@ def _measuring(particle: Particle, box_metric: str) -> Steps:
     if is_large:
         yield Progress(1, parts, N_("Visibility"))
     visibility = _visibility(particle)
-    steps = description_steps(particle.mesh, box_metric=box_metric)
+    steps = description_steps(particle.mesh, keys, box_metric)
     try:
         for done in count(2):
             label = next(steps)
@@ -151,11 +153,11 @@ def find_faults(particle: Particle, visibility: StarPointVisibility | None = Non
     return found
 
 
-def measure_one(particle: Particle) -> Steps:
+def measure_one(particle: Particle, keys: Sequence[str] = DEFAULT_KEYS) -> Steps:
     """As :func:`measure_particle`, for a runner."""
     yield from compile_first("describe")
     yield Started(N_("Measuring"))
-    return (yield from _measuring(particle, "exact"))
+    return (yield from _measuring(particle, "exact", keys))
 
 
 def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
@@ -177,11 +179,13 @@ def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") 
     return tuple(measured)
 
 
-def measure_sample(particles: Sequence[Particle], workers: int | Executor = 1) -> Steps:
+def measure_sample(
+    particles: Sequence[Particle], workers: int | Executor = 1, keys: Sequence[str] = DEFAULT_KEYS
+) -> Steps:
     """As :func:`measure_particles`, in one or several processes; returns a tuple of what was measured."""
     yield from compile_first("describe")
     yield Started(N_("Measuring"), len(particles))
-    jobs = [Job(measure_one, (particle,)) for particle in particles]
+    jobs = [Job(measure_one, (particle, keys)) for particle in particles]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
     return tuple(value_of(result) for result in results)

@@ -184,12 +184,22 @@ class DatasetRequest:
 
 
 class Outputs(Strict):
-    """What is written below the output folder."""
+    """What is written below the output folder.
+
+    Parameters
+    ----------
+    chords
+        Whether the descriptors have width and thickness by chords, which take longer.
+    dataset_by_group
+        One dataset for each group, in folders of ``dataset``, with a manifest.
+    """
 
     descriptors: bool = True
+    chords: bool = False
     fits: bool = False
     meshes: bool = True
     dataset: bool = True
+    dataset_by_group: bool = False
     lmax_study: bool = False
     coarsening_study: bool = False
     summary: bool = True
@@ -275,6 +285,8 @@ class Recipe(_ChoiceEntries):
     def _has_dataset(self) -> Self:
         if not self.outputs.dataset and (self.representatives or self.exports):
             raise ValueError("representatives and exports need the dataset among the outputs")
+        if self.outputs.dataset_by_group and (self.representatives or self.exports):
+            raise ValueError("representatives and exports are of one dataset, not of one for each group")
         return self
 
     @property

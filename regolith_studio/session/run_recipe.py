@@ -18,6 +18,7 @@ from typing import Any
 
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.dataset.folder_io import check_count, write_stored
+from regolith_studio.descriptors.catalogue import CHORD_KEYS, DEFAULT_KEYS
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes, write_in_stage
@@ -46,6 +47,7 @@ from regolith_studio.session.batch.writers import (
     n_failures,
     shapes_of,
     time_writer,
+    write_library,
 )
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.particles import RECIPE as EXTRACTION
@@ -158,7 +160,7 @@ def _check_inputs(run: RecipeRun) -> None:
 
 def _check_size(recipe: Recipe, n_particles: int) -> None:
     """Raise an error for a dataset that would be too large to be read."""
-    if recipe.outputs.dataset:
+    if recipe.outputs.dataset and not recipe.outputs.dataset_by_group:
         count = recipe.representatives.count if recipe.representatives else 0
         check_count(count or n_particles, recipe.choices().coarsening_request.max_facets)
 
@@ -188,6 +190,7 @@ def _process_particles(run: RecipeRun, batch: Batch, executor: Executor) -> Part
         shapes=shapes,
         box_metric=run.choices.box_metric,
         fit_options=run.choices.fit_options,
+        keys=(*DEFAULT_KEYS, *CHORD_KEYS) if outputs.chords else DEFAULT_KEYS,
     )
     members = run.items.members
     yield from compile_first_for(run.choices.method if needs_polyhedra else "")
@@ -207,7 +210,7 @@ def _write_results(run: RecipeRun, batch: Batch) -> Part:
     with contextlib.ExitStack() as stack:
         writers: list[ResultWriter] = [
             run.summary,
-            stack.enter_context(failure_writer(run.stage)),
+            stack.enter_context(failure_writer(run.stage, run.items.problems)),
             stack.enter_context(time_writer(run.folder / JOURNAL / "times.csv")),
         ]
         if outputs.descriptors:
@@ -260,13 +263,18 @@ def _write_volume_documents(run: RecipeRun, prepared: PreparedInputs) -> None:
 
 
 def _write_dataset(run: RecipeRun, batch: Batch) -> None:
+    provenance = dataset_provenance(run.tally.fitted, run.choices.coarsening_request, _preset(run))
+    name = run.folder.resolve().name
     try:
+        if run.recipe.outputs.dataset_by_group:
+            write_library(run.stage / "dataset", batch, name, provenance)
+            return
         write_stored(
             run.stage / "dataset",
             lambda: shapes_of(batch),
             run.tally.n_coarse,
-            name=run.folder.resolve().name,
-            provenance=dataset_provenance(run.tally.fitted, run.choices.coarsening_request, _preset(run)),
+            name=name,
+            provenance=provenance,
         )
     except RegolithError as error:
         if run.tally.n_coarse:

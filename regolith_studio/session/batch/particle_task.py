@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.dataset.folder_io import stored_shape
+from regolith_studio.descriptors.catalogue import DEFAULT_KEYS
 from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
@@ -40,6 +41,7 @@ class ParticleTask:
 
     - ``coarsening``: settings of the coarsening; ``None`` for none.
     - ``shapes``: whether the polyhedra become a dataset.
+    - ``keys``: of the descriptors that are measured.
     - ``fit_options``: how fits are made.
     """
 
@@ -49,6 +51,7 @@ class ParticleTask:
     shapes: bool
     box_metric: str
     fit_options: FitOptions = DEFAULT_FIT_OPTIONS
+    keys: tuple[str, ...] = DEFAULT_KEYS
 
 
 @dataclass
@@ -102,7 +105,7 @@ def _process_particle(
     entry: _RecordBuilder, particle: Particle, task: ParticleTask
 ) -> Generator[Step, None, None]:
     if task.measure:
-        facts = yield from entry.attempt("measuring", Job(_measure, (particle, task.box_metric)))
+        facts = yield from entry.attempt("measuring", Job(_measure, (particle, task)))
         if facts is not None:
             entry.values["described"] = facts
     fit = None
@@ -128,10 +131,10 @@ def _read(item: BatchInput) -> Particle:
     return item.particle()
 
 
-def _measure(particle: Particle, box_metric: str) -> Steps:
+def _measure(particle: Particle, task: ParticleTask) -> Steps:
     """What ``descriptors.json`` says of the particle; a number that is not finite is a mistake here."""
     yield Started(N_("Measuring"))
-    facts: MeasuredParticle = measure_particle(particle, box_metric)
+    facts: MeasuredParticle = measure_particle(particle, task.box_metric, task.keys)
     return _finite(described(particle, facts))
 
 

@@ -3,23 +3,26 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import IO, Any, Protocol
 
 import numpy as np
 
+from regolith_studio.dataset.dataset import Provenance
 from regolith_studio.dataset.export import ExportOptions, check_loss_accepted
-from regolith_studio.dataset.folder_io import StoredShape
+from regolith_studio.dataset.folder_io import StoredShape, dataset_hash, write_stored
 from regolith_studio.dataset.size_distributions import parse_sizes
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.errors import InputError
+from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.io import fits_from
 from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes, write_in_stage
 from regolith_studio.io.checkpoint import CheckpointRecord
-from regolith_studio.io.json_text import JsonListWriter
+from regolith_studio.io.file_names import file_stem, unique_name
+from regolith_studio.io.json_text import JsonListWriter, json_bytes
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.batch import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
@@ -32,6 +35,7 @@ from regolith_studio.jobs.dataset_jobs import (
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
+from regolith_studio.readers.particles import FileProblem
 from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, STAGES, shape_blob
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.measurements import FittedSample, table_columns, table_row, write_fits
@@ -220,9 +224,9 @@ class _FailureWriter:
 
 
 @contextmanager
-def failure_writer(folder: Path) -> Iterator[ResultWriter]:
-    """Writes ``failed.csv`` with everything that went wrong, if anything did."""
-    writer = _FailureWriter()
+def failure_writer(folder: Path, unread: Sequence[FileProblem] = ()) -> Iterator[ResultWriter]:
+    """Writes ``failed.csv`` with everything that went wrong, if anything did, and `unread` files."""
+    writer = _FailureWriter([[each.path, "reading", each.sentence] for each in unread])
     yield writer
     path = folder / "failed.csv"
     if writer.rows:
@@ -281,13 +285,40 @@ class RunStatistics:
                 self.fitted.append(ShCoefficients(np.frombuffer(record.blobs[CUT], dtype="<f8")))
 
 
-def shapes_of(batch: Batch) -> Iterator[StoredShape]:
-    """The shapes of a dataset, one at a time."""
-    for record in batch.checkpoint.records():
+def shapes_of(batch: Batch, indices: Sequence[int] | None = None) -> Iterator[StoredShape]:
+    """The shapes of a dataset, one at a time; of all particles or of those at ascending indices."""
+    for record in batch.checkpoint.records() if indices is None else batch.checkpoint.records_at(indices):
         if shape := record.values.get("shape"):
             parts = shape["compound"]["parts"] if shape["compound"] else ()
             meshes = [record.blobs[shape_blob(part)] for part in range(1 + len(parts))]
             yield StoredShape(shape, tuple(meshes))
+
+
+MANIFEST = "manifest.json"
+
+
+def write_library(folder: Path, batch: Batch, name: str, provenance: Provenance) -> None:
+    """Write a dataset for each group, and ``manifest.json`` with the hash of each one's document.
+
+    Raises
+    ------
+    DatasetError
+        If there is no shape, or something cannot be written.
+    """
+    members: dict[str, list[int]] = {}
+    for record in batch.checkpoint.records(blobs=False):
+        if record.values.get("shape"):
+            members.setdefault(record.values["group"], []).append(record.index)
+    if not members:
+        raise DatasetError("A library needs at least one particle.")
+    entries, taken = [], dict[str, int]()
+    for group, indices in members.items():
+        inner = file_stem(unique_name(group.replace("/", "_") or name, "", taken))
+        place, shapes = folder / inner, partial(shapes_of, batch, indices)
+        write_stored(place, shapes, len(indices), name=inner, provenance=provenance)
+        entry = {"group": group, "folder": inner, "particles": len(indices), "sha256": dataset_hash(place)}
+        entries.append(entry)
+    write_bytes(folder / MANIFEST, json_bytes({"name": name, "datasets": entries}))
 
 
 def reason_of(record: CheckpointRecord, stage: str = "") -> str:

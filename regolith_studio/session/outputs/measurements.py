@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE, CHORD_KEYS, LOSS_KEYS
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics import io as fit_io
@@ -71,6 +71,7 @@ def _repair_document(particle: Particle, facts: MeasuredParticle) -> dict[str, A
 def short_table(particles: Sequence[Particle], facts: Sequence[MeasuredParticle]) -> Table:
     """The descriptors of section 2.2 by their symbols, narrow enough for a terminal."""
     keys = ("volume", "equivalent_radius", "surface_area", *(key for key in LOSS_KEYS if key != "volume"))
+    keys += tuple(key for key in CHORD_KEYS if any(key in (each.descriptors or ()) for each in facts))
     columns = [Column(CATALOGUE[key].symbol, CATALOGUE[key].unit) for key in keys]
     rows = [
         (particle.name, *[_value(each, key) for key in keys], _soundness(particle, each))

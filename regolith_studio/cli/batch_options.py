@@ -1,0 +1,93 @@
+"""Options of commands that may work on thousands of meshes: resumed, on a cluster, from an archive."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
+from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.options import usage_errors
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+
+if TYPE_CHECKING:
+    from regolith_studio.session.choices import Choices
+    from regolith_studio.session.recipe import Outputs
+
+MOST_IN_MEMORY = 2000
+"""Members of an archive that are read into memory together."""
+_MOST_LINES = 20
+"""Problems that are printed; ``failed.csv`` has all."""
+
+Resume = Annotated[bool, typer.Option("--resume", help="Resume an interrupted run in the output folder.")]
+
+
+@dataclass(frozen=True)
+class BatchOptions:
+    """Where particles are worked on, and whether a run is resumed."""
+
+    resume: Resume = False
+    runner: Runner = "processes"
+    address: Address = ""
+    tls: Tls = None
+
+    def asked(self, paths: Sequence[Path]) -> bool:
+        """Whether an archive is among the paths, or an option needs a run that goes to the disk."""
+        from regolith_studio.readers.archives import archive_of, is_archive
+
+        return self.resume or self.runner != "processes" or any(is_archive(p) or archive_of(p) for p in paths)
+
+    def run(
+        self,
+        paths: Sequence[Path],
+        output: Path,
+        outputs: "Outputs",
+        choices: "Choices",
+        reading: ReadingOptions,
+        jobs: int,
+        json: bool,
+    ) -> None:
+        """Work on one particle after the other with the results on the disk, print what was written, end."""
+        from regolith_studio.readers.coefficient_tables import table_convention
+        from regolith_studio.readers.units import unit_factor
+        from regolith_studio.session.recipe import FilesEntry, Recipe
+        from regolith_studio.session.run_recipe import run_recipe
+
+        with usage_errors():
+            unit_factor(reading.unit)
+            convention = table_convention(reading.convention)
+        entry = FilesEntry(
+            files=[str(path.absolute()) for path in paths],
+            unit=reading.unit,
+            repair=reading.repair,
+            convention=convention,
+        )
+        recipe = Recipe.from_choices(choices, [entry], outputs)
+        with chosen_executor(self.runner, jobs, self.address, self.tls) as executor:
+            done = run_with_progress(run_recipe(recipe, Path(), output, executor, self.resume), logged=True)
+        more = len(done.problems) - _MOST_LINES
+        print_errors(done.problems[:_MOST_LINES] + ([f"{more:,} more in failed.csv."] if more > 0 else []))
+        if json:
+            counts = {"particles": done.tally.n_read, "failed": len(done.problems)}
+            print_json({"folder": str(output), **counts, "problems": list(done.problems)})
+        else:
+            typer.echo(f"{len(done.items.members):,} particles, {len(done.problems):,} problems in {output}")
+        raise typer.Exit(1 if done.problems else 0)
+
+
+def check_fits_memory(paths: Sequence[Path]) -> None:
+    """Refuse to hold all meshes of a large archive in memory."""
+    from regolith_studio.readers.archives import archive_content, is_archive
+
+    for path in paths:
+        if (
+            is_archive(path)
+            and path.is_file()
+            and (count := len(archive_content(path).members)) > MOST_IN_MEMORY
+        ):
+            raise typer.BadParameter(
+                f"{path.name} holds {count:,} meshes, and at most {MOST_IN_MEMORY:,} are read into memory: "
+                "use describe --output, coarsen, or dataset build --by-group."
+            )

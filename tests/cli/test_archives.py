@@ -1,0 +1,95 @@
+"""``describe``, ``coarsen`` and ``dataset build`` of an archive as libraries of simulants are."""
+
+import csv
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+from regolith_studio.readers import archives
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory, grains: Path) -> Path:
+    """The three ellipsoids in two fractions, one of them an archive, and an empty file."""
+    folder = tmp_path_factory.mktemp("library")
+    inner, path = folder / "75-300.zip", folder / "JSC.zip"
+    with zipfile.ZipFile(inner, "w", zipfile.ZIP_DEFLATED) as fraction:
+        for file in sorted(grains.glob("*.stl"))[:2]:
+            fraction.write(file, file.name)
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(inner, inner.name)
+        for file in sorted(grains.glob("*.stl")):
+            archive.write(file, f"75m/{file.name}")
+        archive.writestr("75m/nothing.stl", b"")
+    inner.unlink()
+    return path
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+NAMES = ["grain-a", "grain-b", "75m_grain-a", "75m_grain-b", "grain-c"]
+
+
+def test_that_an_archive_is_described_into_a_folder_and_resumed(command, library, grains, tmp_path):
+    output = tmp_path / "out"
+    result = command("describe", library, "-o", output, "--chords")
+    assert result.code == 1
+    assert "nothing.stl is empty: it has no bytes at all." in result.err
+    table = rows(output / "descriptors.csv")
+    assert [row["name"] for row in table] == NAMES
+    assert [row["group"] for row in table] == ["75-300"] * 2 + ["75m"] * 3
+    plain = {each["name"]: each for each in command("describe", grains, "--json").json}
+    for row in table:
+        expected = plain[row["name"].removeprefix("75m_")]
+        assert float(row["volume [um^3]"]) == pytest.approx(expected["volume"])
+    assert float(table[0]["width [um]"]) == pytest.approx(40, rel=0.02)
+    assert float(table[0]["thickness_over_width"]) == pytest.approx(15 / 20, rel=0.02)
+    assert [row["name"] for row in rows(output / "failed.csv")] == ["nothing"]
+    again = command("describe", library, "-o", output, "--chords", "--resume", "--json")
+    assert (again.json["particles"], again.code) == (0, 1)  # nothing was left to do
+
+
+def test_that_a_large_archive_needs_a_folder(command, library, monkeypatch):
+    monkeypatch.setattr("regolith_studio.cli.batch_options.MOST_IN_MEMORY", 5)
+    result = command("describe", library)
+    assert result.code == 2
+    assert "JSC.zip holds 6 meshes, and at most 5 are read into memory" in " ".join(result.err.split())
+
+
+def test_that_a_cluster_needs_a_folder_too(command, library):
+    assert "need a folder for the results" in command("describe", library, "--runner", "dask").err
+
+
+def test_that_an_archive_is_coarsened_and_becomes_a_dataset_for_each_fraction(command, library, tmp_path):
+    result = command("coarsen", library, "-o", tmp_path / "coarse", "--method", "quadric")
+    assert result.code == 1
+    assert {path.name for path in (tmp_path / "coarse" / "meshes").glob("*.stl")} == {
+        f"{name}.stl" for name in NAMES
+    }
+    options = ("--by-group", "--method", "quadric", "--facets", "12")
+    command("dataset", "build", library, "-o", tmp_path / "library", *options)
+    manifest = json.loads((tmp_path / "library" / "dataset" / "manifest.json").read_text())
+    assert [(each["group"], each["particles"]) for each in manifest["datasets"]] == [
+        ("75-300", 2),
+        ("75m", 3),
+    ]
+    for each in manifest["datasets"]:
+        folder = tmp_path / "library" / "dataset" / each["folder"]
+        assert dataset_hash(folder) == each["sha256"]
+        assert len(read_dataset(folder)) == each["particles"]
+    refused = command(
+        "dataset", "build", library, "-o", tmp_path / "other", "--by-group", "--representatives", "2"
+    )
+    assert (refused.code, (tmp_path / "other").exists()) == (2, False)
+
+
+def test_that_the_list_of_an_archive_is_made_once(library, monkeypatch):
+    archives.archive_content(library)
+    monkeypatch.setattr(archives, "shared_sandbox", None)
+    assert len(archives.archive_content(library).members) == 6
