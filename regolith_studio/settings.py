@@ -75,6 +75,11 @@ def settings_of_kind(kind: Any) -> Iterator[Field[Any]]:
     return (each for each in fields(kind) if "label" in each.metadata)
 
 
+def settings_in(kind: Any, values: Any) -> dict[str, Any]:
+    """The settings of a dataclass that `values` holds as attributes, by name."""
+    return {each.name: getattr(values, each.name) for each in settings_of_kind(kind)}
+
+
 def is_whole(value: Any) -> bool:
     """Whether a value is a whole number: 4 or 4.0, but neither 4.5 nor True nor "4"."""
     number = isinstance(value, numbers.Real) and not isinstance(value, bool)

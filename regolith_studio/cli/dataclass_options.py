@@ -9,7 +9,7 @@ import functools
 import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import MISSING, Field, fields, is_dataclass
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, Literal, get_origin, get_type_hints
 
 import typer
 
@@ -47,7 +47,8 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
         default = inspect.Parameter.empty if each.default is MISSING else each.default
         annotation = hints[each.name]
         if "label" in each.metadata:
-            annotation = Annotated[annotation, _option(each, each.name)]
+            plain = str if get_origin(annotation) is Literal else annotation  # the group checks its keys
+            annotation = Annotated[plain, _option(each, each.name)]
         yield from _options(each.name, annotation, default)
 
 

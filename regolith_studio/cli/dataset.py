@@ -1,5 +1,6 @@
 """``dataset``: build, validate, list, sample, export, formats."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -23,11 +24,21 @@ from regolith_studio.cli.options import (
     values,
 )
 from regolith_studio.cli.terminal import CommandGroup, print_errors, print_json, run_with_progress
+from regolith_studio.dataset.settings import DatasetSettings, ExportSettings, RepresentativesSettings
+from regolith_studio.settings import setting_of, settings_in
 
 DRAW_BYTES, ROW_BYTES = 150, 1500
 """Memory that a drawn particle takes as numbers, and as an entry of JSON."""
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")]
+
+
+@dataclass(frozen=True)
+class DatasetSelection(DatasetSettings):
+    """Which particles are taken: all of them where nothing is said."""
+
+    count: int = setting_of(DatasetSettings, "count", default=0)
+
 
 app = typer.Typer(
     cls=CommandGroup,
@@ -46,38 +57,7 @@ def build(
     stopping: StoppingOptions,
     preset: Preset = "",
     how: CoarseningOptions,
-    representatives: Annotated[
-        int,
-        typer.Option(
-            "--representatives",
-            min=0,
-            max=100_000,
-            help="Number of representative particles; 0 keeps all particles.",
-            metavar="N",
-        ),
-    ] = 0,
-    weighting: Annotated[
-        str,
-        typer.Option("--weighting", help="Weighting of the representatives: number or volume.", metavar="W"),
-    ] = "number",
-    size_importance: Annotated[
-        float,
-        typer.Option(
-            "--size-importance",
-            min=0.0,
-            max=1e6,
-            help="Weight of the size, relative to a shape feature, in the choice of representatives.",
-            metavar="X",
-        ),
-    ] = 0.0,
-    sizes: Annotated[
-        str,
-        typer.Option(
-            "--sizes",
-            help="Size distribution: measured, classes:25,37,..., fitted:log-normal, log-normal:50,0.4, ...",
-            metavar="SPEC",
-        ),
-    ] = "measured",
+    selection: DatasetSelection,
     quality_curve: Annotated[
         Path | None,
         typer.Option(
@@ -86,9 +66,6 @@ def build(
             metavar="FILE",
         ),
     ] = None,
-    name: Annotated[
-        str, typer.Option("--name", help="Name of the dataset; that of the folder if omitted.")
-    ] = "",
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing dataset in the folder.")
     ] = False,
@@ -121,12 +98,13 @@ def build(
 
     choices = how.choices(preset, seed=seed, **stopping.changes)
     with usage_errors():
-        parse_sizes(sizes)
-        chosen = RepresentativesRequest.of(representatives or 10, weighting, size_importance, seed)
+        parse_sizes(selection.sizes)
+    asked = settings_in(RepresentativesSettings, selection)
+    chosen = RepresentativesRequest(**asked | {"count": selection.count or 10}, seed=seed)
     if by_group:
         from regolith_studio.session.recipe import Outputs
 
-        if representatives or sizes != "measured" or quality_curve is not None or name or overwrite:
+        if selection != DatasetSelection() or quality_curve is not None or overwrite:
             raise typer.BadParameter(
                 "--by-group keeps every particle, so that it goes without --representatives, --sizes, "
                 "--quality-curve, --name and --overwrite."
@@ -141,7 +119,8 @@ def build(
         curve = run_with_progress(measure_quality(population, chosen))
         write_bytes(quality_curve, csv_text(quality_table(curve)).encode("utf-8"))
     known = None if choices.preset_modified else choices.preset
-    options = DatasetOptions(name, known, overwrite, jobs, chosen if representatives else None, sizes)
+    wanted = chosen if selection.count else None
+    options = DatasetOptions(selection.name, known, overwrite, jobs, wanted, selection.sizes)
     built = run_with_progress(
         build_dataset_folder(loaded.particles, choices.coarsening_request, output, options)
     )
@@ -261,7 +240,9 @@ def formats(json: Json = False) -> None:
 
 
 @app.command("export")
+@with_dataclass_options
 def export(
+    *,
     folder: DatasetFolder,
     output: Folder,
     to: Annotated[
@@ -270,36 +251,7 @@ def export(
             "--to", help="Formats, such as rocky,yade, or all; listed by `dataset formats`.", metavar="LIST"
         ),
     ],
-    coarse_graining: Annotated[
-        float,
-        typer.Option(
-            "--coarse-graining",
-            min=1e-6,
-            max=1e6,
-            help="Coarse-graining factor on all diameters; 1 keeps the particles' sizes, the paper takes 10.",
-            metavar="F",
-        ),
-    ] = 1.0,
-    particles: Annotated[
-        int,
-        typer.Option(
-            "--particles",
-            min=1,
-            max=1_000_000,
-            help="Number of particles in formats that list single ones.",
-            metavar="N",
-        ),
-    ] = 200,
-    max_error: Annotated[
-        float,
-        typer.Option(
-            "--max-error",
-            min=0.0,
-            max=0.9,
-            help="Largest mismatch (Jaccard distance) of shapes made of spheres; takes as many as needed.",
-            metavar="E",
-        ),
-    ] = 0.0,
+    exports: ExportSettings,
     set_: Annotated[
         list[str] | None,
         typer.Option(
@@ -320,10 +272,7 @@ def export(
         keys = [key.strip() for key in to.split(",") if key.strip()]
         chosen = chosen_exporters(keys)
         changes: dict[str, object] = dict(values(set_, "setting"))
-        settings = ExportOptions(
-            coarse_graining_factor=coarse_graining, n_particles=particles, max_error=max_error, seed=seed
-        )
-        settings = settings.replaced(**changes)
+        settings = ExportOptions(**settings_in(ExportSettings, exports), seed=seed).replaced(**changes)
     done = run_with_progress(export_dataset_folder(folder, keys, output, settings, lossy))
     written = {one.key for one in done}
     for each in chosen:

@@ -170,7 +170,7 @@ def _shipped_scan(folder: Path, executor: "Executor", seed: int, problems: list[
         seed=seed,
         volumes=[VolumeEntry(file="sample:grey")],
         outputs=Outputs(fits=True, meshes=False, summary=False),
-        representatives=Representatives(count=N_REPRESENTATIVES, name="demo"),
+        representatives=Representatives.model_validate({"count": N_REPRESENTATIVES, "name": "demo"}),
         exports=Exports(targets=[EXPORTER]),
     )
 

@@ -13,12 +13,14 @@ from typing import Any
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import IGNORED_FILES
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
+from regolith_studio.dataset.settings import ExportSettings
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
 from regolith_studio.io.atomic import exchange, filled_folder, recover_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 from regolith_studio.version import __version__
 
 FORMAT = "regolith-studio-export"
@@ -27,47 +29,24 @@ PARTS = ("contact", "test", "times")
 
 
 @dataclass(frozen=True)
-class ExportOptions:
+class ExportOptions(ExportSettings):
     """Options of all exporters; each uses those that its format can hold.
 
     - ``contact``, ``test``, ``times``: of the simulated test: Tables 1 and 2, and the waiting times of
       scripts.
-    - ``coarse_graining_factor``: factor on all diameters (section 2.6); 1 keeps the particles' sizes, the
-      paper takes 10.
-    - ``n_particles``: particles drawn for formats that list individual particles.
-    - ``seed``: of the draw.
+    - ``seed``: of the draw of particles.
     - ``rounding``: radius of rounded edges, as a share of the smallest distance between a shape's centre and
       a facet, for formats that need rounded edges.
-    - ``n_spheres``: spheres per shape, for formats that have only spheres.
-    - ``max_error``: largest Jaccard distance between a shape and its spheres; the fewest spheres that reach
-      it take the place of `n_spheres`. 0: `n_spheres`.
+    - ``n_spheres``: spheres per shape, for formats that have only spheres; where ``max_error`` is not 0, the
+      fewest that reach it take their place.
     """
 
     contact: ContactParameters = field(default_factory=ContactParameters)
     test: LiftingCylinderTest = field(default_factory=LiftingCylinderTest)
     times: ScriptTimes = field(default_factory=ScriptTimes)
-    coarse_graining_factor: float = 1.0
-    n_particles: int = 200
     seed: int = 0
-    rounding: float = 0.02
-    n_spheres: int = 20
-    max_error: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.coarse_graining_factor <= 1e6:
-            raise InputError(
-                f"The coarse-graining factor must be positive, got {self.coarse_graining_factor}."
-            )
-        if not 1 <= self.n_particles <= 1_000_000:
-            raise InputError(f"Between 1 and 1,000,000 particles can be listed, got {self.n_particles}.")
-        if not 0.0 < self.rounding <= 0.5:
-            raise InputError(f"The rounding must be between 0 and 0.5, got {self.rounding}.")
-        if not 1 <= self.n_spheres <= 500:
-            raise InputError(f"Between 1 and 500 spheres can be fitted, got {self.n_spheres}.")
-        if not 0.0 <= self.max_error < 1.0:
-            raise InputError(
-                f"The error of the spheres must be at least 0 and below 1, got {self.max_error}."
-            )
+    rounding: float = setting(0.02, "Rounding", minimum=1e-6, maximum=0.5)
+    n_spheres: int = setting(20, "Spheres per shape", minimum=1, maximum=500)
 
     def replaced(self, **changes: Any) -> "ExportOptions":
         """A copy with other values; fields of `contact`, `test` and `times` by their own names.

@@ -358,7 +358,7 @@ def correct_grains(
 
 
 def save_objects(path: Path, training: ObjectTraining, scan: Path) -> Steps:
-    """Write the file of an object classifier with the SHA-256 of the scan of its examples; returns the path."""
+    """Write the file of an object classifier with the SHA-256 of its examples' scan; returns the path."""
     yield Started(Message(N_("Writing {name}"), name=path.name))
     write_objects(path, replace(training, scan=volume_sha256(scan)))
     return path

@@ -67,7 +67,7 @@ class GrainSettings:
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "GrainSettings":
-        """The recipe in a JSON document; what is missing stays at its default, what is not known is left out."""
+        """The recipe in a JSON document; what is missing stays at its default, what is unknown is omitted."""
         segmentation = _section(document, "segmentation")
         parts = {name: _parse_settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
         return cls(

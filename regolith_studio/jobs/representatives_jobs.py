@@ -11,7 +11,7 @@ from regolith_studio.dataset.representatives import (
     choose_representatives,
 )
 from regolith_studio.dataset.schema import Representation
-from regolith_studio.dataset.size_distributions import Weighting
+from regolith_studio.dataset.settings import RepresentativesSettings
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
@@ -23,31 +23,10 @@ from regolith_studio.messages import N_, count_message
 
 
 @dataclass(frozen=True)
-class RepresentativesRequest:
-    """What is asked of a choice; picklable.
+class RepresentativesRequest(RepresentativesSettings):
+    """What is asked of a choice; ``seed``: only for populations too large for a table of distances."""
 
-    - ``count``: number of representatives.
-    - ``weighting``: whether classes and sizes count particles or their volume.
-    - ``size_importance``: how much a standard deviation of ln d counts against one of a shape feature.
-    - ``seed``: only for populations too large for a table of distances.
-    """
-
-    count: int = 10
-    weighting: Weighting = "number"
-    size_importance: float = 0.0
     seed: int = 0
-
-    @classmethod
-    def of(
-        cls, count: int, weighting: str, size_importance: float = 0.0, seed: int = 0
-    ) -> "RepresentativesRequest":
-        """From what a user has typed."""
-        if not (count >= 1 and size_importance >= 0.0):
-            raise InputError(f"At least one representative is needed, got {count}.")
-        match weighting:
-            case "number" | "volume":
-                return cls(count, weighting, size_importance, seed)
-        raise InputError(f"Representatives count number or volume, got {weighting!r}.")
 
 
 @dataclass(frozen=True)

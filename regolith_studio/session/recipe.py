@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, model_validator
 
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.dataset.settings import DatasetSettings, ExportSettings
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_TABLE_DEGREE
@@ -136,40 +137,52 @@ class VolumeEntry(Strict):
         return self
 
 
-class Representatives(Strict):
-    """As ``regolith-studio dataset build`` takes them.
+def _entry(each: DataclassField[Any]) -> tuple[Any, Any]:
+    """Type and description of the entry that holds a setting."""
+    known = each.metadata
+    kind = Literal[tuple(known["choices"])] if "choices" in known else type(each.default)
+    limits = {"ge": known.get("minimum"), "le": known.get("maximum")}
+    given = {name: value for name, value in limits.items() if value is not None}
+    return kind, Field(default=each.default, title=known["label"], description=known["tip"], **given)
 
-    - ``count``: particles that stand for all; with 0 each stands for itself.
-    - ``weighting``: what they count: ``number`` or ``volume``.
-    - ``size_importance``: how much a standard deviation of ln d counts in their choice against one of a
-      shape feature.
-    - ``seed``: of the choice among very many particles; that of the recipe where left out.
-    - ``sizes``: size distributions of the classes, such as ``measured`` or ``classes:25,37,56``.
-    - ``name``: of the dataset; that of the folder of the results where left out.
+
+def _entries(kind: Any) -> dict[str, tuple[Any, Any]]:
+    """An entry for each setting of a dataclass."""
+    return {each.name: _entry(each) for each in settings_of_kind(kind)}
+
+
+_ENTRIES = _entries(Choices)
+
+if TYPE_CHECKING:
+
+    class _DatasetEntries(Strict):
+        def __getattr__(self, name: str) -> Any: ...
+
+    _ExportEntries = _DatasetEntries
+else:
+    _DatasetEntries = create_model("_DatasetEntries", __base__=Strict, **_entries(DatasetSettings))
+    _ExportEntries = create_model("_ExportEntries", __base__=Strict, **_entries(ExportSettings))
+
+
+class Representatives(_DatasetEntries):
+    """As ``regolith-studio dataset build`` takes them; with a count of 0 each particle stands for itself.
+
+    ``seed``: of the choice among very many particles; that of the recipe where left out.
     """
 
-    count: int = Field(default=10, ge=0)
-    weighting: Literal["number", "volume"] = "number"
-    size_importance: float = Field(default=0.0, ge=0.0)
     seed: int | None = Field(default=None, ge=0, lt=2**63)
-    sizes: str = "measured"
-    name: str = ""
 
 
-class Exports(Strict):
+class Exports(_ExportEntries):
     """As ``regolith-studio dataset export`` takes them.
 
     - ``targets``: keys of the formats, or ``all``.
-    - ``coarse_graining``: by which all diameters are enlarged.
-    - ``particles``: bodies in formats that list single ones.
-    - ``seed``: of their draw; that of the recipe where left out.
+    - ``seed``: of the draw of particles; that of the recipe where left out.
     - ``settings``: of contact, cylinder, times or formats, by their names, in SI units.
     - ``lossy``: whether formats that change the shapes are allowed.
     """
 
     targets: list[str] = Field(min_length=1)
-    coarse_graining: float = 1.0
-    particles: int = 200
     seed: int | None = Field(default=None, ge=0, lt=2**63)
     settings: dict[str, int | float] = Field(default_factory=dict)
     lossy: bool = False
@@ -227,17 +240,6 @@ class RecipeInputs(Strict):
     population: Population | None = None
     particles: list[str | NamedParticle] | None = Field(default=None, min_length=1, max_length=MAX_ENTRIES)
 
-
-def _entry(each: DataclassField[Any]) -> tuple[Any, Any]:
-    """Type and description of the entry that holds a setting."""
-    known = each.metadata
-    kind = Literal[tuple(known["choices"])] if "choices" in known else type(each.default)
-    limits = {"ge": known.get("minimum"), "le": known.get("maximum")}
-    given = {name: value for name, value in limits.items() if value is not None}
-    return kind, Field(default=each.default, title=known["label"], description=known["tip"], **given)
-
-
-_ENTRIES = {each.name: _entry(each) for each in settings_of_kind(Choices)}
 
 if TYPE_CHECKING:
 

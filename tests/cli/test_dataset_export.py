@@ -101,7 +101,7 @@ def test_that_particles_keep_their_sizes_where_no_coarse_graining_is_named(
     """The command line and recipes had enlarged them tenfold, the window had not."""
     assert command("dataset", "export", folder, "--to", "rocky", "-o", tmp_path / "out").code == 0
     case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
-    assert case["coarse_graining_factor"] == Exports(targets=["rocky"]).coarse_graining == 1.0
+    assert case["coarse_graining_factor"] == Exports(targets=["rocky"]).coarse_graining_factor == 1.0
 
 
 def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) -> None:

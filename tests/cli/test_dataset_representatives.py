@@ -85,7 +85,7 @@ def test_that_sizes_can_be_given(command, crowd: Path, tmp_path: Path) -> None:
     ("more", "code", "word"),
     [
         (("--sizes", "gauss:3"), 2, "is not a size distribution"),
-        (("--weighting", "mass"), 2, "count number or volume"),
+        (("--weighting", "mass"), 2, "must be one of number, volume"),
         (("--representatives", 10), 1, "Between 1 and 9"),
     ],
 )

@@ -124,7 +124,7 @@ STANDING = {
 def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
     command, grains: Path, tmp_path: Path
 ) -> None:
-    exports = {"targets": ["yade", "rocky"], "coarse_graining": 4, "particles": 7}
+    exports = {"targets": ["yade", "rocky"], "coarse_graining_factor": 4, "n_particles": 7}
     exports |= {"settings": {"density": 2500.0}}
     whole = {"seed": 5, "level": 4, "representatives": STANDING}
     given_recipe = recipe(tmp_path, grains, **whole, exports=exports)

@@ -452,8 +452,8 @@ def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) ->
         representatives=Representatives(count=6, weighting="volume", sizes="classes:30,60", name="six"),
         exports=Exports(
             targets=["yade", "lammps"],
-            coarse_graining=4.0,
-            particles=7,
+            coarse_graining_factor=4.0,
+            n_particles=7,
             settings={"density": 2500.0, "gravity": 1.62},
         ),
     )

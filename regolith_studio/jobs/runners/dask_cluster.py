@@ -208,7 +208,7 @@ class DaskRunner:
         return handle
 
     def check_shared(self, path: Path, folder: Path) -> None:
-        """Check that each worker finds a file or folder, and a folder for temporary files, under these paths."""
+        """Check that each worker finds a file or folder, and one for temporary files, under these paths."""
         probe = folder / "probe"
         probe.write_text(key := uuid.uuid4().hex)
         for worker, (size, seen) in self._client.run(_size_and_text, str(path), str(probe)).items():

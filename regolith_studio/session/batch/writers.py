@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import IO, Any, Protocol
@@ -12,6 +12,7 @@ import numpy as np
 from regolith_studio.dataset.dataset import Provenance
 from regolith_studio.dataset.export import ExportOptions, check_loss_accepted
 from regolith_studio.dataset.folder_io import StoredShape, dataset_hash, write_stored
+from regolith_studio.dataset.settings import ExportSettings, RepresentativesSettings
 from regolith_studio.dataset.size_distributions import parse_sizes
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import DatasetError, InputError
@@ -40,6 +41,7 @@ from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH,
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.measurements import FittedSample, table_columns, table_row, write_fits
 from regolith_studio.session.recipe import Exports, Recipe, Representatives
+from regolith_studio.settings import settings_in
 
 DATASET, EXPORTS = "dataset", "exports"
 
@@ -68,7 +70,7 @@ def build_dataset_step(
     folder: Path,
     workers: int | Executor,
 ) -> Steps:
-    """Write ``dataset`` in `folder`; returns :class:`~regolith_studio.jobs.dataset_jobs.DatasetBuildResult`."""
+    """Write ``dataset`` in `folder`; returns a `DatasetBuildResult`."""
     chosen = representatives_request(request, recipe.seed)
     options = DatasetOptions(request.name, preset, True, workers, chosen, sizes=request.sizes)
     return (yield from build_dataset_folder(particles, coarsening, folder / DATASET, options))
@@ -88,13 +90,13 @@ def representatives_request(request: Representatives, seed: int) -> Representati
     if not request.count:
         return None
     chosen = seed if request.seed is None else request.seed
-    return RepresentativesRequest.of(request.count, request.weighting, request.size_importance, chosen)
+    return RepresentativesRequest(**settings_in(RepresentativesSettings, request), seed=chosen)
 
 
 def export_options(request: Exports, seed: int) -> ExportOptions:
     """The export options of a recipe."""
-    options = ExportOptions(coarse_graining_factor=request.coarse_graining, n_particles=request.particles)
-    return replace(options, seed=seed if request.seed is None else request.seed).replaced(**request.settings)
+    chosen = seed if request.seed is None else request.seed
+    return ExportOptions(**settings_in(ExportSettings, request), seed=chosen).replaced(**request.settings)
 
 
 class ResultWriter(Protocol):

@@ -7,12 +7,14 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
+from regolith_studio.dataset.settings import RepresentativesSettings
 from regolith_studio.dataset.size_distributions import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.io.file_names import file_stem
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
+from regolith_studio.settings import setting_of
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
@@ -20,10 +22,7 @@ from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, Number
 
 MAX_REPRESENTATIVES = 200
 COUNT = NumberSpec("N", N_("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=N_("Usually 10."))
-WEIGHTINGS = {
-    "number": N_("Each particle counts equally"),
-    "volume": N_("Particles count by their volume"),
-}
+WEIGHTINGS = setting_of(RepresentativesSettings, "weighting").metadata["choices"]
 SIZES = {
     "measured": (N_("As measured"), ""),
     "classes": (N_("In size classes"), "25,37,56,84,125"),
@@ -94,12 +93,12 @@ class RepresentativesPanel(QWidget):
 
     def request(self) -> RepresentativesRequest:
         """The requested number and weighting."""
-        return RepresentativesRequest.of(int(self.count.value()), self.weighting.currentData())
+        return RepresentativesRequest(int(self.count.value()), self.weighting.currentData())
 
     def recipe_part(self, sizes: str, name: str) -> Representatives:
         """The fields of a recipe for representatives and dataset."""
-        fields = asdict(self.request()) | ({"count": 0} if self.every else {})
-        return Representatives(**fields, sizes=sizes, name=name)
+        count = {"count": 0} if self.every else {}
+        return Representatives(**asdict(self.request()) | count | {"sizes": sizes, "name": name})
 
     def show_population(self, n_particles: int) -> None:
         """Set the number of open particles, the upper limit of representatives."""

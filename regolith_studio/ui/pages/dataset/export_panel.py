@@ -22,9 +22,11 @@ from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import MANY_PARTICLES, CylinderFilling
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
+from regolith_studio.dataset.settings import ExportSettings
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
+from regolith_studio.settings import settings_in
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -178,11 +180,11 @@ class ExportPanel(QWidget):
         """The fields of a recipe; ``None`` if the export is not possible."""
         if not self.chosen() or not self._allowed():
             return None
+        options = self.options()
         return Exports(
+            **settings_in(ExportSettings, options),
             targets=list(self.chosen()),
-            coarse_graining=float(self.coarse_graining.value()),
-            particles=int(self.particles.value()),
-            seed=0,
+            seed=options.seed,
             settings={name: x for part in PARTS for name, x in getattr(self, part).changes().items()},
             lossy=self.consent(),
         )
@@ -206,7 +208,11 @@ class ExportPanel(QWidget):
     def show_recipe(self, recipe: Exports) -> None:
         """Show the values of a recipe."""
         every = tuple(EXPORTERS) if "all" in recipe.targets else recipe.targets
-        chosen = {"targets": every, "coarse_graining": recipe.coarse_graining, "particles": recipe.particles}
+        chosen = {
+            "targets": every,
+            "coarse_graining": recipe.coarse_graining_factor,
+            "particles": recipe.n_particles,
+        }
         self.setValue(chosen | {"lossy": recipe.lossy, PARTS[0]: recipe.settings})
 
     def _box(self, key: str) -> QCheckBox:
