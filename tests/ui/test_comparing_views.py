@@ -8,10 +8,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.cross_section import cross_section
+from regolith_studio.jobs.events import Job
 from regolith_studio.scene import clipping, facets
 from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.comparison import OTHER
-from regolith_studio.scene.surfaces import OUTLINE, SURFACE, signed_distances
+from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.labels import grouped_number
@@ -219,11 +220,11 @@ def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(w
 def test_that_another_theme_measures_no_distances_again(window, wait, settled, monkeypatch):
     asked = []
 
-    def counted(*arguments):
-        asked.append(arguments)
-        return signed_distances(*arguments)
+    def counted(function, *arguments):
+        asked.append(function)
+        return Job(function, *arguments)
 
-    monkeypatch.setattr("regolith_studio.ui.views.three_views.signed_distances", counted)
+    monkeypatch.setattr("regolith_studio.ui.views.three_views.Job", counted)
     switch(window, "heat")
     wait(lambda: len(asked) == 1)
     settled(window)

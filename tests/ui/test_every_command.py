@@ -150,7 +150,7 @@ def silent_commands(window, monkeypatch, unseen=(*NOTHING_TO_SEE, *WITH_PARTICLE
 @pytest.mark.slow
 def test_that_every_command_answers_where_nothing_is_open(shown, preferences, monkeypatch):
     window = shown(MainWindow(Session(HoldingRunner()), preferences, "image"))
-    monkeypatch.setattr(window.session, "open_sample", lambda: None)
+    monkeypatch.setattr(window.session, "open_sample", lambda **_: None)
     assert silent_commands(window, monkeypatch) == []
 
 
