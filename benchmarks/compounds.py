@@ -73,6 +73,7 @@ def judged(mesh: Mesh, seed: int) -> dict[str, Any]:
     union = manifold3d.Manifold.batch_boolean(list(map(manifold_of, parts)), manifold3d.OpType.Add)
     measured = independent(union)
     body = manifold_of(mesh.moved(shift=-found.centre))
+    shells = [shell.volume() for shell in union.decompose()]  # that of a closed pore is negative
     return {
         "solidity": round(wanted["volume"] / wanted["convex_hull_volume"], 4),
         "worst_error": float(max(abs(measured[key] / wanted[key] - 1.0) for key in KEYS)),
@@ -81,7 +82,8 @@ def judged(mesh: Mesh, seed: int) -> dict[str, Any]:
         "jaccard_stated": round(found.jaccard_distance, 4),
         "jaccard_exact": round(distance(manifold_of(convex.polyhedron.mesh), body), 4),
         "parts": found.n_parts,
-        "bodies": len(union.decompose()),
+        "bodies": sum(volume > 0.0 for volume in shells),
+        "pores": sum(volume < 0.0 for volume in shells),
         "seconds": round(seconds, 2),
     }
 
