@@ -99,7 +99,7 @@ print(json.dumps({"engines": _engines(), "problems": _plugin_problems()}))
 def examine_machine() -> dict[str, Any]:
     """Versions, machine, OpenGL, display, DEM engines, and sentences about what is missing."""
     libraries = _libraries()
-    missing = [f"{name} cannot be loaded: {found}" for name, found in libraries.items() if found != "loads"]
+    missing = [f"{name} cannot be loaded: {state}" for name, state in libraries.items() if state != "loads"]
     if any("cannot open shared object" in each for each in missing):
         missing.append(f"Debian and Ubuntu: apt-get install {DEBIAN}")
         missing.append(f"Fedora: dnf install {FEDORA}")
@@ -110,14 +110,14 @@ def examine_machine() -> dict[str, Any]:
     if "problem" in display:
         missing.append(f"The window cannot open: {display['problem']}")
     packages = _packages()
-    missing += [f"The package {name} is not installed." for name, found in packages.items() if not found]
+    missing += [f"The package {name} is not installed." for name, state in packages.items() if not state]
     kinds = _ask_child(_KINDS_QUESTION)
     missing += kinds.get("problems", ())
     if "problem" in kinds:
         missing.append(f"DEM engines and other kinds cannot be listed: {kinds['problem']}")
     return {
         "program": {"regolith-studio": __version__, "python": platform.python_version()},
-        "packages": {name: found or "missing" for name, found in packages.items()},
+        "packages": {name: state or "missing" for name, state in packages.items()},
         "machine": {"system": platform.platform(), "cores": os.cpu_count(), "executable": sys.executable},
         "libraries": libraries,
         "opengl": opengl,
@@ -129,7 +129,7 @@ def examine_machine() -> dict[str, Any]:
 
 def unusable(report: dict[str, Any]) -> bool:
     """Whether something that the window needs is missing, but for a display: another session may have one."""
-    loads = all(found == "loads" for found in report["libraries"].values())
+    loads = all(state == "loads" for state in report["libraries"].values())
     return not loads or "problem" in report["opengl"] or "missing" in report["packages"].values()
 
 
@@ -292,8 +292,8 @@ def _update_databases() -> None:
 
     for program, name in DATABASES.items():
         folder = data_folder() / name
-        if found := shutil.which(program):
-            subprocess.run([found, str(folder)], capture_output=True, check=False)
+        if path := shutil.which(program):
+            subprocess.run([path, str(folder)], capture_output=True, check=False)
         else:
             print_errors(
                 [f"{program} was not found: types of files count once `{program} {folder}` has run."]

@@ -216,13 +216,15 @@ def train_objects(
     with usage_errors():
         given, settings = contents.of(scan), grains.recipe
     chosen = read_object_examples(examples, OBJECT_CLASSES)
-    found: ClassifiedObjects = run_with_progress(train_on_objects(given, settings, chosen, scratch_folder()))
-    assert found.training is not None
-    write_objects(output, found.training)
+    objects: ClassifiedObjects = run_with_progress(
+        train_on_objects(given, settings, chosen, scratch_folder())
+    )
+    assert objects.training is not None
+    write_objects(output, objects.training)
     if json:
-        print_json({"objects": str(output), "classified": found.counts()})
+        print_json({"objects": str(output), "classified": objects.counts()})
     else:
-        words = ", ".join(f"{count:,} {name}" for name, count in found.counts().items())
+        words = ", ".join(f"{count:,} {name}" for name, count in objects.counts().items())
         typer.echo(f"Classified as {words}. Written to {output}.")
 
 

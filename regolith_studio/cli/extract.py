@@ -41,8 +41,8 @@ class ScanRow:
     @property
     def recipe(self) -> Path | None:
         """File that holds all settings of the grains."""
-        found: Path | None = self.options.get(_RECIPE)
-        return found
+        path: Path | None = self.options.get(_RECIPE)
+        return path
 
     @contextmanager
     def errors_named(self) -> Iterator[None]:
@@ -86,7 +86,7 @@ def rows_of_scans(
 
     A row names its scan by the file, the file without its suffix, the group, or the path from the table on.
     """
-    found: dict[Path, ScanRow] = {}
+    by_scan: dict[Path, ScanRow] = {}
     for row in rows:
         meant = [
             scan
@@ -101,10 +101,10 @@ def rows_of_scans(
                 f"{where}: “{printable(row.scan)}” names {count} of the scans; write its path "
                 "from the table on."
             )
-        if meant[0] in found:
-            raise FileError(f"{where}: {meant[0].name} has a row already, line {found[meant[0]].line}.")
-        found[meant[0]] = row
-    return found
+        if meant[0] in by_scan:
+            raise FileError(f"{where}: {meant[0].name} has a row already, line {by_scan[meant[0]].line}.")
+        by_scan[meant[0]] = row
+    return by_scan
 
 
 def _check_columns(path: Path, names: list[str]) -> None:

@@ -182,10 +182,10 @@ def compared_with(
 
     if not isinstance(source.content, Sample):
         return None
-    found: DistributionComparison = run_with_progress(
+    comparison: DistributionComparison = run_with_progress(
         compare_distributions(source.content, draws, size_range, jobs)
     )
-    return found
+    return comparison
 
 
 def shape_source(
@@ -207,8 +207,10 @@ def shape_source(
     if named:
         return read_shape_source(named[0]), 0
     loaded = reading.read([Path(source) for source in sources])
-    found: ShapeSource = run_with_progress(sample_of_meshes(loaded.particles, fit_request_for(request), jobs))
-    return found, exit_code(loaded, len(found.notes))
+    sample: ShapeSource = run_with_progress(
+        sample_of_meshes(loaded.particles, fit_request_for(request), jobs)
+    )
+    return sample, exit_code(loaded, len(sample.notes))
 
 
 def _named(fitted: Any, names: str) -> Any:

@@ -243,9 +243,9 @@ def _print_far_fits(
     """Print which fits are far off, the first few in full."""
     from regolith_studio.jobs.particle_jobs import check_fits
 
-    found = [(each, fit) for each, fit in zip(particles, fitted, strict=True) if not isinstance(fit, str)]
-    steps = check_fits([each for each, _ in found], [fit for _, fit in found], request, jobs)
-    said = zip(found, run_with_progress(steps), strict=True)
+    fits = [(each, fit) for each, fit in zip(particles, fitted, strict=True) if not isinstance(fit, str)]
+    steps = check_fits([each for each, _ in fits], [fit for _, fit in fits], request, jobs)
+    said = zip(fits, run_with_progress(steps), strict=True)
     lines = [f"{each.name}: {sentence}" for (each, _), sentence in said if sentence]
     more = len(lines) - _MOST_LINES
     print_errors(lines[:_MOST_LINES] + ([f"{more} more fits are as far off."] if more > 0 else []))

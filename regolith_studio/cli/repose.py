@@ -180,13 +180,13 @@ def positions_in(file: Path, unit: str, diameter: float, columns: str = "") -> t
         pile = read_final_state(file)
         return pile.points, pile.diameters
     metres = metres_in(unit)
-    found = read_positions(file, unit, columns=columns)
-    print_errors(found.notes)
+    positions = read_positions(file, unit, columns=columns)
+    print_errors(positions.notes)
     if diameter > 0.0:
-        return found.points, diameter * metres
-    if found.diameters is None:
+        return positions.points, diameter * metres
+    if positions.diameters is None:
         raise FileError(f"{file.name} holds no diameters; name one for all particles with --diameter.")
-    return found.points, found.diameters
+    return positions.points, positions.diameters
 
 
 def metres_in(unit: str) -> float:

@@ -115,13 +115,13 @@ def build_dataset(
 
 def software_versions() -> dict[str, str]:
     """Versions of the program and of the packages that its results depend on."""
-    found = {"regolith-studio": __version__}
+    versions = {"regolith-studio": __version__}
     for package in PACKAGES:
         try:
-            found[package] = version(package)
+            versions[package] = version(package)
         except PackageNotFoundError:
             continue
-    return found
+    return versions
 
 
 def singleton_class(particle: Particle) -> ShapeClass:

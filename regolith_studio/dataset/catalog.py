@@ -151,12 +151,12 @@ def _export(folder: Path) -> CatalogEntry:
 def _result(folder: Path) -> CatalogEntry:
     record = _record(folder / RESULT, RESULT_FORMAT)
     angle = (record.get("measurement") or {}).get("angle_deg")
-    found = "no angle" if angle is None else f"{float(angle):.1f}° angle of repose"
+    words = "no angle" if angle is None else f"{float(angle):.1f}° angle of repose"
     engine = record["engine"]["label"]
     return CatalogEntry(
         folder=folder,
         kind="result",
-        name=f"{found} of {record['dataset']['name']}",
+        name=f"{words} of {record['dataset']['name']}",
         sha256=str(record["dataset"].get("sha256") or ""),
         detail=f"{engine}, {record['state']}",
     )

@@ -278,15 +278,15 @@ def check_export_folder(target: Path, format_name: str) -> None:
         return
     if not target.is_dir():
         raise DatasetError(f"{target} is a file; an export is written into a folder.")
-    found = {
+    present = {
         path.relative_to(target).as_posix()
         for path in target.rglob("*")
         if path.is_file() and path.name not in IGNORED_FILES
     }
-    if not found:
+    if not present:
         return
-    foreign = sorted(found - _own_files(target / RECORD, format_name) - {RECORD})
-    if RECORD not in found or foreign:
+    foreign = sorted(present - _own_files(target / RECORD, format_name) - {RECORD})
+    if RECORD not in present or foreign:
         name = foreign[0] if foreign else RECORD
         raise DatasetError(
             f"{target} holds files that are not an export's ({name}); nothing was overwritten."

@@ -89,10 +89,10 @@ def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
 
 def _foreign(folder: Path, meshes: Iterable[str]) -> list[str]:
     own = {DOCUMENT, README, "meshes", *meshes}
-    found = {
+    present = {
         path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in IGNORED_FILES
     }
-    return sorted(found - own)
+    return sorted(present - own)
 
 
 def _texts_in(content: object) -> Iterator[str]:

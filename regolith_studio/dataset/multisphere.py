@@ -66,8 +66,8 @@ def sphere_masses(shape: Polyhedron, spheres: FloatArray) -> SphereMasses:
     goal = np.array([CENTRE_WEIGHT, 0.0, 0.0, 0.0, *(wanted[upper] / wanted.max())])
     even = radii**3 / (radii**3).sum()
     matrix = np.vstack([rows * even, EVENNESS * np.eye(len(spheres))])
-    found = lsq_linear(matrix, np.concatenate([goal, np.full(len(spheres), EVENNESS)]), (LOWEST, np.inf))
-    masses = found.x * even
+    solution = lsq_linear(matrix, np.concatenate([goal, np.full(len(spheres), EVENNESS)]), (LOWEST, np.inf))
+    masses = solution.x * even
     masses /= masses.sum()
     off = rows @ masses - goal
     centre = float(np.linalg.norm(off[1:4])) / CENTRE_WEIGHT

@@ -69,11 +69,11 @@ def _representation_problems(dataset: Dataset) -> list[str]:
     stated = dataset.provenance.representation
     if stated is None:
         return []
-    found = polyhedra_errors(dataset, stated)
+    errors = polyhedra_errors(dataset, stated)
     return [
-        f"{DOCUMENT} states an error of {error:.4g} in {key}, the shapes have {found[key]:.4g}."
+        f"{DOCUMENT} states an error of {error:.4g} in {key}, the shapes have {errors[key]:.4g}."
         for key, error in stated.errors.items()
-        if not abs(error - found[key]) <= REPRESENTATION_TOLERANCE
+        if not abs(error - errors[key]) <= REPRESENTATION_TOLERANCE
     ]
 
 
@@ -103,17 +103,17 @@ def _shape_problems(shape: Polyhedron) -> list[str]:
 
 def _stated_problems(shape: ConvexCompound, record: CompoundRecord) -> list[str]:
     """What a record says of a union and its parts do not have."""
-    found = union_properties(shape)
+    properties = union_properties(shape)
     problems = []
     for name in ("volume", "centre_of_mass", "inertia"):
-        apart = float(np.abs(np.subtract(getattr(record, name), found[name])).max())
+        apart = float(np.abs(np.subtract(getattr(record, name), properties[name])).max())
         if not apart <= STATED_TOLERANCE:
             words = name.replace("_", " ")
             problems.append(f"the {words} that is stated is {apart:.3g} off that of the union of the parts.")
-    for key in sorted(record.descriptors.keys() ^ found["descriptors"].keys()):
+    for key in sorted(record.descriptors.keys() ^ properties["descriptors"].keys()):
         problems.append(f"the descriptor {key} is stated or missing, and should not be.")
-    for key in sorted(record.descriptors.keys() & found["descriptors"].keys()):
-        stated, real = record.descriptors[key], found["descriptors"][key]
+    for key in sorted(record.descriptors.keys() & properties["descriptors"].keys()):
+        stated, real = record.descriptors[key], properties["descriptors"][key]
         if not abs(stated - real) <= DESCRIPTOR_TOLERANCE * max(1.0, abs(real)):
             problems.append(f"a {key} of {stated!r} is stated, the union of the parts has {real!r}.")
     return problems
@@ -144,11 +144,11 @@ def _file_problems(
     return [f"{file}: {problem}" for problem in problems]
 
 
-def _count_problems(record: MeshRecord, found: tuple[int, int, int], where: str) -> list[str]:
+def _count_problems(record: MeshRecord, counts: tuple[int, int, int], where: str) -> list[str]:
     stated = (record.n_facets, record.n_vertices, record.n_triangles)
     return [
         f"{is_stated} {what} are stated, the {where} {is_found}."
-        for what, is_stated, is_found in zip(("facets", "vertices", "triangles"), stated, found, strict=True)
+        for what, is_stated, is_found in zip(("facets", "vertices", "triangles"), stated, counts, strict=True)
         if is_stated != is_found
     ]
 

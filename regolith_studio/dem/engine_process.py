@@ -191,10 +191,10 @@ def _begin(
     """The engine from its beginning or a saved state on, the number of its first snapshot, the run's key."""
     engine = engine_named(key)
     run = run_key(prepared, engine, settings)
-    found = read_engine_state(folder / STATE, run) if isinstance(engine, ResumableEngine) else None
-    remove_snapshots(folder, found[1] if found else 0)
-    if isinstance(engine, ResumableEngine) and found:
-        return engine.resume(prepared, settings, found[0]), found[1], run
+    state = read_engine_state(folder / STATE, run) if isinstance(engine, ResumableEngine) else None
+    remove_snapshots(folder, state[1] if state else 0)
+    if isinstance(engine, ResumableEngine) and state:
+        return engine.resume(prepared, settings, state[0]), state[1], run
     return engine.simulate(prepared, settings), 0, run
 
 

@@ -100,19 +100,19 @@ def packing_document(density: float, filled: float | None, heap: HeapPacking | N
 
 def within_particles(prepared: PreparedCase, particles: ParticleState, points: FloatArray) -> BoolArray:
     """Whether each point is in a particle, shape (m,)."""
-    found = np.zeros(len(points), dtype=bool)
+    inside = np.zeros(len(points), dtype=bool)
     near = cKDTree(points).query_ball_point(particles.points, enclosing_radii(prepared))
     if prepared.case.shapes == "spheres":
-        found[np.unique(np.concatenate([np.asarray(each, dtype=int) for each in near]))] = True
-        return found
+        inside[np.unique(np.concatenate([np.asarray(each, dtype=int) for each in near]))] = True
+        return inside
     planes = [[ConvexHull(part).equations for part in parts] for parts in prepared.part_vertices]
     turns = Rotation.from_quat(particles.orientations, scalar_first=True).as_matrix()
     for k, close in enumerate(near):
         index = np.asarray(close, dtype=int)
         own = (points[index] - particles.points[k]) @ turns[k] / prepared.scales[k]
         for part in planes[int(prepared.class_index[k])]:
-            found[index] |= (own @ part[:, :3].T + part[:, 3] <= 0.0).all(axis=1)
-    return found
+            inside[index] |= (own @ part[:, :3].T + part[:, 3] <= 0.0).all(axis=1)
+    return inside
 
 
 def _contacts(prepared: PreparedCase, heap: ParticleState, chosen: IntArray, d: float) -> float:

@@ -58,8 +58,8 @@ class RunSummary:
 
     def message(self, sentence: str) -> str:
         """A sentence of the document as a message that can be translated, where it was written as one."""
-        found = map(from_json, self.document.get("messages", ()))
-        return next((each for each in found if each == sentence), sentence)
+        messages = map(from_json, self.document.get("messages", ()))
+        return next((each for each in messages if each == sentence), sentence)
 
 
 @contextmanager
@@ -156,10 +156,10 @@ def run_key(prepared: PreparedCase, engine: Engine, settings: Any) -> str:
         "coarse_graining": prepared.coarse_graining,
         "filling": filling_hash(prepared),
     }
-    found = hashlib.sha256(canonical_json(document).encode("utf-8"))
+    digest = hashlib.sha256(canonical_json(document).encode("utf-8"))
     for array in (prepared.diameters, prepared.class_index, *prepared.shapes):
-        found.update(array.tobytes())
-    return found.hexdigest()
+        digest.update(array.tobytes())
+    return digest.hexdigest()
 
 
 def filling_hash(prepared: PreparedCase) -> str | None:
@@ -297,16 +297,16 @@ def read_run(folder: Path) -> RunSummary:
 
 def find_runs(folder: Path) -> list[RunSummary]:
     """Runs in a folder and directly below it, in the natural order of names; invalid ones are skipped."""
-    found = []
+    runs = []
     below = sorted(
         (path for path in folder.iterdir() if path.is_dir()), key=lambda path: natural_key(path.name)
     )
     for place in (folder, *below):
         try:
-            found.append(read_run(place))
+            runs.append(read_run(place))
         except FileError:
             continue
-    return found
+    return runs
 
 
 def _write(path: Path, content: bytes) -> Path:

@@ -34,9 +34,9 @@ def near_pairs(points: FloatArray, reach: FloatArray) -> IntArray:
 
     Each pair is found by its larger sphere, so that few large particles cost little among many small ones.
     """
-    found = cKDTree(points).query_ball_point(points, 2.0 * reach)
-    first = np.repeat(np.arange(len(points)), [len(each) for each in found])
-    second = np.fromiter((k for each in found for k in each), dtype=np.int64, count=len(first))
+    neighbours = cKDTree(points).query_ball_point(points, 2.0 * reach)
+    first = np.repeat(np.arange(len(points)), [len(each) for each in neighbours])
+    second = np.fromiter((k for each in neighbours for k in each), dtype=np.int64, count=len(first))
     smaller = (reach[second] < reach[first]) | ((reach[second] == reach[first]) & (second < first))
     first, second = first[smaller], second[smaller]
     near = np.linalg.norm(points[first] - points[second], axis=1) < reach[first] + reach[second]
@@ -71,7 +71,7 @@ def separations(
     counts = np.array([len(parts) for parts in shapes])
     owner, part_pairs = _pairs_of_parts(prepared.class_index, counts, pairs)
     turns = Rotation.from_quat(particles.orientations, scalar_first=True).as_matrix()
-    found = np.full(len(pairs), np.inf)
+    distances = np.full(len(pairs), np.inf)
     step = max(1, CHUNK_BYTES // forms.bytes_per_pair)
     for start in range(0, len(owner), step):
         own = owner[start : start + step]
@@ -83,8 +83,8 @@ def separations(
         between = particles.points[b] - particles.points[a]
         rounded = radii[a] + radii[b]
         distance = _distances(one, other, between, limit + rounded) - rounded
-        np.minimum.at(found, own, distance)
-    return found
+        np.minimum.at(distances, own, distance)
+    return distances
 
 
 def _pairs_of_parts(class_index: IntArray, counts: IntArray, pairs: IntArray) -> tuple[IntArray, IntArray]:
@@ -178,11 +178,11 @@ def _distances(one: _Forms, other: _Forms, between: FloatArray, limits: FloatArr
     ahead += (one.normals @ other.vertices.transpose(0, 2, 1)).min(axis=2)
     behind = -(other.normals @ ways)[..., 0] - other.offsets
     behind += (other.normals @ one.vertices.transpose(0, 2, 1)).min(axis=2)
-    found: FloatArray = np.maximum(ahead.max(axis=1), behind.max(axis=1))
-    close = np.flatnonzero(found <= limits)
+    gaps: FloatArray = np.maximum(ahead.max(axis=1), behind.max(axis=1))
+    close = np.flatnonzero(gaps <= limits)
     which, distance = _edge_distances(one.chosen(close), other.chosen(close), between[close])
-    np.maximum.at(found, close[which], distance)
-    return found
+    np.maximum.at(gaps, close[which], distance)
+    return gaps
 
 
 def _edge_distances(one: _Forms, other: _Forms, between: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -176,11 +176,11 @@ def _united(meshes: Sequence[Mesh], facets: Sequence[IntArray]) -> tuple[Mesh, I
     union = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add)
     if union.status() != manifold3d.Error.NoError or union.is_empty():
         raise GeometryError("The union of the convex parts cannot be made.")
-    found = union.to_mesh64()
+    solid = union.to_mesh64()
     vertices, triangles, exposed = _without_ledges(
-        np.asarray(found.vert_properties)[:, :3],
-        np.asarray(found.tri_verts).astype(np.int64),
-        np.asarray(found.face_id).astype(np.int64),
+        np.asarray(solid.vert_properties)[:, :3],
+        np.asarray(solid.tri_verts).astype(np.int64),
+        np.asarray(solid.face_id).astype(np.int64),
     )
     return Mesh(vertices * size + middle, triangles), exposed
 

@@ -152,7 +152,7 @@ def inscribed_ball(normals: FloatArray, offsets: FloatArray) -> tuple[FloatArray
         Unit vectors (n, 3), and distances (n,) of any sign; sizes near 1, as HiGHS has absolute tolerances.
     """
     rows = np.column_stack([normals, np.ones(len(normals))])
-    found = linprog([0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=(None, None), method="highs")
-    if found.x is None:
+    optimum = linprog([0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=(None, None), method="highs")
+    if optimum.x is None:
         return np.full(3, np.nan), float("nan")
-    return np.asarray(found.x[:3]), float(found.x[3])
+    return np.asarray(optimum.x[:3]), float(optimum.x[3])

@@ -101,10 +101,10 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     Raises GeometryError if the vertices lie in one plane.
     """
     known = _of_meshes.get(solid) if isinstance(solid, Mesh) else None
-    found = known or _searched(solid)
+    box = known or _searched(solid)
     if isinstance(solid, Mesh):
-        _of_meshes[solid] = found
-    return found
+        _of_meshes[solid] = box
+    return box
 
 
 def heuristic_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:

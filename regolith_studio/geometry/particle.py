@@ -88,7 +88,7 @@ def defect_triangles(particle: Particle) -> dict[str, FloatArray]:
     """
     done = particle.repair
     given = particle.mesh if done is None or done.given is None else done.given
-    found = {kind: given.triangles[at] for kind, at in locate_defects(given).items()}
+    corners = {kind: given.triangles[at] for kind, at in locate_defects(given).items()}
     if done is not None and done.filling_faces:
-        found["filled"] = done.mesh.triangles[-done.filling_faces :]
-    return found
+        corners["filled"] = done.mesh.triangles[-done.filling_faces :]
+    return corners

@@ -82,7 +82,7 @@ def _chord_along(points: FloatArray, direction: FloatArray) -> float:
     normals, offsets = planes[:, :3], -planes[:, 3]
     rise = normals @ direction
     both = np.concatenate([np.column_stack([normals, 0.0 * rise]), np.column_stack([normals, rise])])
-    found = linprog([0, 0, 0, -1], both, np.tile(offsets, 2), bounds=[(None, None)] * 3 + [(0, None)])
-    if found.x is None:
+    optimum = linprog([0, 0, 0, -1], both, np.tile(offsets, 2), bounds=[(None, None)] * 3 + [(0, None)])
+    if optimum.x is None:
         raise GeometryError("The thickness cannot be found: the solid is almost flat.")
-    return float(found.x[3])
+    return float(optimum.x[3])

@@ -121,18 +121,18 @@ def checked_degree(l_max: int, highest: int) -> int:
 @cache
 def degrees(length: int) -> IntArray:
     """Degree l of each of `length` flat indices, shape (length,)."""
-    found = np.array([isqrt(k) for k in range(length)], dtype=np.int64)
-    found.flags.writeable = False
-    return found
+    degree_of = np.array([isqrt(k) for k in range(length)], dtype=np.int64)
+    degree_of.flags.writeable = False
+    return degree_of
 
 
 @cache
 def orders(length: int) -> IntArray:
     """Order m of each of `length` flat indices, shape (length,)."""
     degree = degrees(length)
-    found = np.arange(length) - degree**2 - degree
-    found.flags.writeable = False
-    return found
+    order_of = np.arange(length) - degree**2 - degree
+    order_of.flags.writeable = False
+    return order_of
 
 
 def to_pyshtools(coefficients: ShCoefficients) -> FloatArray:

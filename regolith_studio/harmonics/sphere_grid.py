@@ -194,13 +194,13 @@ class RingBasis:
         """Sums (n, (l_max + 1)^2) over all nodes of values (n, rings * longitudes) times each harmonic."""
         l_max, rings = len(self.legendre) - 1, self.legendre[0].shape[1]
         amplitudes = (values.reshape(len(values) * rings, -1) @ self.waves.T).reshape(len(values), rings, -1)
-        found = np.empty((len(values), (l_max + 1) ** 2))
+        totals = np.empty((len(values), (l_max + 1) ** 2))
         for m, functions in enumerate(self.legendre):
             zonal = _zonal(m, l_max)
-            found[:, zonal + m] = amplitudes[:, :, m] @ functions.T
+            totals[:, zonal + m] = amplitudes[:, :, m] @ functions.T
             if m:
-                found[:, zonal - m] = amplitudes[:, :, l_max + m] @ functions.T
-        return found
+                totals[:, zonal - m] = amplitudes[:, :, l_max + m] @ functions.T
+        return totals
 
 
 def ring_basis(cosines: FloatArray, n_longitudes: int, l_max: int) -> RingBasis:
@@ -248,10 +248,10 @@ class SphereGrid:
 
     def lowest(self, coefficients: FloatArray) -> FloatArray:
         """Smallest value (n,) at the nodes of expansions (n, (l_max + 1)^2)."""
-        found = np.empty(len(coefficients))
+        minima = np.empty(len(coefficients))
         for rows, values in self.blocks(coefficients):
-            found[rows] = values.min(axis=1)
-        return found
+            minima[rows] = values.min(axis=1)
+        return minima
 
     def expanded(self, values: FloatArray) -> FloatArray:
         """Coefficients (n, (l_max + 1)^2) of functions given at the nodes (n, k)."""
@@ -276,7 +276,7 @@ def enclosed_volumes(radii: FloatArray, grid: SphereGrid) -> FloatArray:
 
 def expanded_volumes(coefficients: FloatArray, grid: SphereGrid, exponential: bool = False) -> FloatArray:
     """Volumes (n,) of expansions (n, (l_max + 1)^2) of r, or of ln r if `exponential`."""
-    found = np.empty(len(coefficients))
+    volumes = np.empty(len(coefficients))
     for rows, values in grid.blocks(coefficients):
-        found[rows] = enclosed_volumes(np.exp(values) if exponential else values, grid)
-    return found
+        volumes[rows] = enclosed_volumes(np.exp(values) if exponential else values, grid)
+    return volumes

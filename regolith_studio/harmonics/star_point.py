@@ -73,13 +73,13 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
         return start
     simplex = np.vstack([np.zeros(3), 0.4 * np.eye(3)])
     with np.errstate(invalid="ignore"):  # costs of two points outside are both infinite
-        found = optimize.minimize(
+        optimum = optimize.minimize(
             cost,
             np.zeros(3),
             method="Nelder-Mead",
             options={"initial_simplex": simplex, "maxfev": 80, "xatol": 1e-2, "fatol": 1e-5},
         )
-    return np.asarray(start + found.x * reach)
+    return np.asarray(start + optimum.x * reach)
 
 
 def inner_point(mesh: Mesh) -> FloatArray:

@@ -80,8 +80,8 @@ def radii(expansion: Expansion, directions: ArrayLike, l_max: int | None = None)
     """Radius of the expansion along unit `directions` (n, 3), shape (n,); it may be negative."""
     fit = as_fit(expansion, l_max)
     rays = np.ascontiguousarray(directions, dtype=np.float64)
-    found = radii_along(fit.coefficients, rays)
-    return found if fit.reference is None else found * fit.reference.radii(rays)
+    lengths = radii_along(fit.coefficients, rays)
+    return lengths if fit.reference is None else lengths * fit.reference.radii(rays)
 
 
 def as_fit(expansion: Expansion, l_max: int | None = None) -> HarmonicFit:

@@ -51,10 +51,10 @@ def _routines() -> ModuleType:
     The package around it imports matplotlib, pandas and xarray: a second and 90 MB in a command, many seconds
     in a window, where PySide reads the source of every module that is imported.
     """
-    found = find_spec("pyshtools")
-    if "pyshtools" in sys.modules or found is None or not found.submodule_search_locations:
+    spec = find_spec("pyshtools")
+    if "pyshtools" in sys.modules or spec is None or not spec.submodule_search_locations:
         return import_module("pyshtools.backends.shtools")
-    place = Path(found.submodule_search_locations[0])
+    place = Path(spec.submodule_search_locations[0])
     sys.modules["pyshtools"] = _package("pyshtools", place)
     sys.modules["pyshtools.backends"] = _package("pyshtools.backends", place / "backends")
     try:

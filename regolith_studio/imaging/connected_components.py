@@ -99,8 +99,8 @@ def components_of_slab(
     if core is not None:
         has_core[:] = False
         has_core[np.unique(numbers[core])] = True
-    found = SlabComponents(sizes, boxes[:, 0::2] + shift, boxes[:, 1::2] + 1 + shift, has_core[1:])
-    return numbers.astype(np.int32), found
+    components = SlabComponents(sizes, boxes[:, 0::2] + shift, boxes[:, 1::2] + 1 + shift, has_core[1:])
+    return numbers.astype(np.int32), components
 
 
 class ComponentJoiner:
@@ -132,8 +132,8 @@ class ComponentJoiner:
         links = np.concatenate(self._links)
         shape = (self._count + 1, self._count + 1)
         graph = sparse.coo_array((np.ones(len(links), dtype=np.int8), tuple(links.T)), shape=shape)
-        n_bodies, found = csgraph.connected_components(graph, directed=False)
-        body_of: IntArray = found.astype(np.int64)
+        n_bodies, component_of = csgraph.connected_components(graph, directed=False)
+        body_of: IntArray = component_of.astype(np.int64)
         sizes = np.zeros(n_bodies, dtype=np.int64)
         low = np.full((n_bodies, 3), np.iinfo(np.int64).max)
         high = np.zeros((n_bodies, 3), dtype=np.int64)

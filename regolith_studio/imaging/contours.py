@@ -58,8 +58,8 @@ def depth(mask: BoolArray) -> NDArray[np.float32]:
 
 
 @kernel
-def _fill_squared(mask: BoolArray, deepest: int, found: NDArray[np.int32]) -> None:
-    """Squared distances: along z, then the least over y, then over x; `found` begins at the largest."""
+def _fill_squared(mask: BoolArray, deepest: int, squares: NDArray[np.int32]) -> None:
+    """Squared distances: along z, then the least over y, then over x; `squares` begins at the largest."""
     nx, ny, nz = mask.shape
     most = np.int32(deepest * deepest)
     along = np.empty((nx, ny, nz), dtype=np.int32)
@@ -86,7 +86,7 @@ def _fill_squared(mask: BoolArray, deepest: int, found: NDArray[np.int32]) -> No
             added = np.int32((other - i) ** 2)
             for j in range(ny):
                 for k in range(nz):
-                    found[i, j, k] = min(found[i, j, k], across[other, j, k] + added)
+                    squares[i, j, k] = min(squares[i, j, k], across[other, j, k] + added)
 
 
 class LowPass:

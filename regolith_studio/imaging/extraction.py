@@ -164,7 +164,7 @@ def extraction_steps(
     """
     settings = settings or ExtractionSettings()
     chosen = select_labels(volume, settings, grey is not None, run)
-    found: list[ExtractedParticle] = []
+    particles: list[ExtractedParticle] = []
     cuts = _cuts(volume, grey if settings.surface == "grey" else None, chosen, settings)
     made = in_batches(
         run,
@@ -174,9 +174,9 @@ def extraction_steps(
     )
     for done, (cut, particle) in enumerate(zip(cuts, made, strict=True), start=1):
         if make is None:
-            found.append(particle)
+            particles.append(particle)
         yield ExtractionProgress(done, len(cuts), cut.name, particle)
-    return Extraction(tuple(found), chosen.border, chosen.small, len(cuts))
+    return Extraction(tuple(particles), chosen.border, chosen.small, len(cuts))
 
 
 @dataclass(frozen=True, eq=False)

@@ -84,10 +84,10 @@ def _table(name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
     rows = json.loads(text)[name]["rows"]
     cells: dict[tuple[float, float], FloatArray] = {}
     for cell, numbers in rows.items():
-        found = _CELL.fullmatch(cell)
-        assert found is not None, cell
+        match = _CELL.fullmatch(cell)
+        assert match is not None, cell
         ends = np.reshape(numbers, (-1, _NUMBERS))[: len(KEYS), 1:]
-        cells[float(found[1]), int(found[2]) / 100] = ends
+        cells[float(match[1]), int(match[2]) / 100] = ends
     lost = np.full((len(KEYS), 2), np.nan)
     sizes, noises = (sorted({cell[axis] for cell in cells}) for axis in (0, 1))
     table = np.array([[cells.get((size, noise), lost) for noise in noises] for size in sizes])

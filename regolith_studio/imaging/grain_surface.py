@@ -96,26 +96,26 @@ def grey_mesh(
     """
     others, values = crop.others | (crop.own & ~body), crop.values.astype(np.float32)
     inside, outside = depth(body), depth(~body)
-    found = grain_shares(values, others, inside, outside, cubic_voxels)
-    if isinstance(found, str):
-        return found
-    rim, told = _rim(found.share, others, inside, outside)
-    rim[found.full] = 1.0
+    shares = grain_shares(values, others, inside, outside, cubic_voxels)
+    if isinstance(shares, str):
+        return shares
+    rim, told = _rim(shares.share, others, inside, outside)
+    rim[shares.full] = 1.0
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _MAX_VOLUME_RATIO < volume / np.count_nonzero(body) < _MAX_VOLUME_RATIO:
         return "its brightness and its number of voxels tell different volumes"
     across = float(np.cbrt(6.0 * volume / np.pi))
-    scan = ScanOfGrain(across, found.noise, follows_grey(across, found.noise))
+    scan = ScanOfGrain(across, shares.noise, follows_grey(across, shares.noise))
     if not scan.follows_grey:
         of_mask = mask_mesh(body, iterations, pass_band)
         return GreySurface(with_volume(of_mask, volume), scan)
     rough = body_contour(ndimage.gaussian_filter(rim, PRESMOOTHING))
     mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
-        wider = min(_WIDENING * pass_band / max(found.noise, 1e-6) ** _POWER, _MAX_PASS_BAND)
+        wider = min(_WIDENING * pass_band / max(shares.noise, 1e-6) ** _POWER, _MAX_PASS_BAND)
         twicing = _TWICING if cubic_voxels else _TWICING_OF_UNEQUAL
         how = RefinementSettings(_STEPS, iterations, wider, twicing)
-        blur = _blur(rim, found.noise, mesh, cubic_voxels)
+        blur = _blur(rim, shares.noise, mesh, cubic_voxels)
         fit = refined_to_scan(mesh, rim, told, blur, how)
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
     return GreySurface(with_volume(mesh, volume), scan)

@@ -41,18 +41,18 @@ def label_surface(labels: NDArray[Any], voxel_size: FloatArray, max_edge: int = 
     spacing = np.asarray(voxel_size, float) * step
     image: Any = pyvista.ImageData(dimensions=coarse.shape, spacing=spacing, origin=-spacing / 2)
     image.point_data["labels"] = compact.reshape(coarse.shape).astype(np.int32).ravel(order="F")
-    found: Any = image.contour_labels(
+    contour: Any = image.contour_labels(
         boundary_style="external",
         scalars="labels",
         output_mesh_type="triangles",
         pad_background=False,
         progress_bar=False,
     )
-    if not found.n_cells:
+    if not contour.n_cells:
         return LabelSurface(np.zeros((0, 3)), np.zeros((0, 3), np.int64), np.zeros(0, np.int64))
-    sides = np.asarray(found.cell_data["boundary_labels"]).reshape(found.n_cells, -1)
+    sides = np.asarray(contour.cell_data["boundary_labels"]).reshape(contour.n_cells, -1)
     return LabelSurface(
-        np.asarray(found.points, dtype=np.float64),
-        np.asarray(found.regular_faces, dtype=np.int64),
+        np.asarray(contour.points, dtype=np.float64),
+        np.asarray(contour.regular_faces, dtype=np.int64),
         np.asarray(present[sides.max(axis=1).astype(np.int64)], dtype=np.int64),
     )

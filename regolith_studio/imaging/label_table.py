@@ -80,14 +80,14 @@ def label_table(source: Volume, run: ParallelMap = map) -> LabelTable:
     if source.kind != "labels":
         raise InputError(f"{source.name} holds grey values; segment it before particles can be extracted.")
     table_of = partial(_table_of, SharedArray(source.array), source.name)
-    found = [row for row in run(table_of, slab_ranges(source.shape)) if row is not None]
-    if not found:
+    rows = [row for row in run(table_of, slab_ranges(source.shape)) if row is not None]
+    if not rows:
         raise InputError(f"{source.name} holds no particle: every label is 0.")
-    labels = np.concatenate([part.labels for part in found])
+    labels = np.concatenate([part.labels for part in rows])
     highest = int(labels.max()) + 1
     counts = np.zeros(highest, dtype=np.int64)
     low, high = np.full((highest, 3), np.iinfo(np.int64).max), np.zeros((highest, 3), dtype=np.int64)
-    for part in found:
+    for part in rows:
         counts[part.labels] += part.counts
         low[part.labels] = np.minimum(low[part.labels], part.low)
         high[part.labels] = np.maximum(high[part.labels], part.high)
@@ -104,9 +104,9 @@ def find_padding(source: Volume, run: ParallelMap = map) -> tuple[set[int], Bool
     counts = np.zeros(source.shape[:2], dtype=np.int64)
     if source.dtype.kind == "i":
         find = partial(_padding_in_slab, SharedArray(source.array))
-        for labels, found in run(find, slab_ranges(source.shape)):
+        for labels, padding in run(find, slab_ranges(source.shape)):
             beside |= labels
-            counts += found
+            counts += padding
     return beside, 2 * counts > source.shape[2]
 
 
@@ -129,8 +129,8 @@ def contact_areas(source: Volume, run: ParallelMap = map) -> dict[tuple[int, int
     Counts of faces along the three axes are the components of a flat contact's area vector.
     """
     faces: dict[tuple[int, int], IntArray] = {}
-    for found in run(partial(_faces_in_slab, SharedArray(source.array)), slab_ranges(source.shape)):
-        for pair, counts in found.items():
+    for contacts in run(partial(_faces_in_slab, SharedArray(source.array)), slab_ranges(source.shape)):
+        for pair, counts in contacts.items():
             faces[pair] = faces.get(pair, 0) + counts
     return {pair: float(np.linalg.norm(counts)) for pair, counts in faces.items()}
 

@@ -114,10 +114,10 @@ def grain_shares(
     grain, full = _Grain(above, noise, others, inside, outside, cubic_voxels), inside > RIM
     for _ in range(_ROUNDS):
         before = level
-        found = _level_and_full(grain, level)
-        if found is None:
+        levels = _level_and_full(grain, level)
+        if levels is None:
             break
-        level, full = found
+        level, full = levels
         if (np.abs(level - before)[shell] <= _CHANGE * level[shell]).all():
             break
     return GrainShares(np.asarray(above / level, np.float32), full, noise / float(np.median(level[shell])))
@@ -153,10 +153,10 @@ def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray] | 
     outer = (smooth < 0.5) & (grain.outside <= RIM) & (grain.inside <= RIM) & ~hollow
     noise = grain.noise / float(np.median(level[body]))
     blur = _blur_of(share, outer, away, noise, grain.outside, surface) if grain.cubic else _BLURS[1]
-    found = _rim_level(grain, np.where(known, depths, np.float32(0.0)), blur)
-    if found is None:
+    rim_level = _rim_level(grain, np.where(known, depths, np.float32(0.0)), blur)
+    if rim_level is None:
         return None
-    level, begin = found
+    level, begin = rim_level
     full = body & ((depths > begin) | (grain.inside > RIM))
     return level, full if from_pore is None else full | (body & (from_pore < depths))
 
@@ -266,8 +266,8 @@ def _mean(blocks: tuple[int, ...], block: IntArray, values: Floats) -> tuple[Flo
 
     def blurred(weights: Floats | None) -> Floats:
         sums = np.bincount(block, weights, minlength=size).reshape(blocks).astype(np.float32) / _BLOCK**3
-        found = ndimage.gaussian_filter(sums, _REACH / _BLOCK, mode="constant", truncate=2.0)
-        return np.asarray(found, np.float32)
+        smoothed = ndimage.gaussian_filter(sums, _REACH / _BLOCK, mode="constant", truncate=2.0)
+        return np.asarray(smoothed, np.float32)
 
     total, share = blurred(values), blurred(None)
     return np.divide(total, share, out=np.zeros_like(total), where=share > 1e-6), share

@@ -133,12 +133,12 @@ def without_crossings(mesh: Mesh, safe: Mesh) -> Mesh:
         _mark_doubtful(mesh.vertices - low, mesh.faces, normals, inside, doubtful)
         looked_at = _about(mesh.faces, np.flatnonzero(doubtful), len(normals), _RINGS_TESTED)
         faces = np.ascontiguousarray(mesh.faces[looked_at[mesh.faces].any(axis=1)])
-        found = crossing_pairs(mesh.vertices, faces)
-        if found is None:
+        crossings = crossing_pairs(mesh.vertices, faces)
+        if crossings is None:
             break
-        if found[0] == 0:
+        if crossings[0] == 0:
             return mesh
-        near = _about(faces, np.flatnonzero(found[1]), len(normals), _RINGS_RESTORED)
+        near = _about(faces, np.flatnonzero(crossings[1]), len(normals), _RINGS_RESTORED)
         mesh = Mesh(np.where(near[:, None], safe.vertices, mesh.vertices), mesh.faces)
     return safe
 

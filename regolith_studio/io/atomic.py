@@ -282,8 +282,8 @@ def _sha256_list(folder: Path) -> bytes:
 
 def _files_in(folder: Path) -> set[str]:
     """Paths of the files below a folder, relative to it, with slashes."""
-    found = (path for path in folder.rglob("*") if not path.is_dir() and path.suffix not in (NEW, LOCK))
-    return {path.relative_to(folder).as_posix() for path in found}
+    paths = (path for path in folder.rglob("*") if not path.is_dir() and path.suffix not in (NEW, LOCK))
+    return {path.relative_to(folder).as_posix() for path in paths}
 
 
 def _replace_listed(stage: Path, folder: Path, listed: str) -> None:

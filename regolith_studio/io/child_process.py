@@ -35,8 +35,8 @@ def start_module(
     as for :class:`subprocess.Popen`.
     """
     # a checkout that is not installed is found by its path; -P keeps files of the current folder out
-    found = [str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")]
-    path = {"PYTHONPATH": os.pathsep.join(filter(None, found))}
+    search_path = [str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")]
+    path = {"PYTHONPATH": os.pathsep.join(filter(None, search_path))}
     return subprocess.Popen(
         [sys.executable, "-P", "-m", module, *arguments],
         stdin=subprocess.PIPE,

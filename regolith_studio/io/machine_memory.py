@@ -11,10 +11,10 @@ FALLBACK = 8 * 1024**3
 def machine_memory() -> int:
     """Bytes of memory that the machine has, used or free."""
     try:
-        found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+        total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
         return FALLBACK
-    return found if found > 0 else FALLBACK
+    return total if total > 0 else FALLBACK
 
 
 def check_memory(n_bytes: float, what: str) -> None:

@@ -121,10 +121,10 @@ def map_probabilities(
             try:
                 yield Progress(*next(steps))
             except StopIteration as end:
-                found = end.value
+                shares = end.value
                 break
         yield Started(Message(N_("Writing {name}"), name=path.name))
-        for done, total in write_probability_file(path, found):
+        for done, total in write_probability_file(path, shares):
             yield Progress(done, total)
     return path
 
@@ -207,9 +207,9 @@ def train_on_strokes(
     vectors = {each: _vectors_of(volume, each, known, settings.features) for each in strokes}
     positions, labels, rows = painted_rows(strokes)
     none = np.zeros((0, len(settings.features.names)), dtype=np.float32)
-    found = np.concatenate([none, *(vectors[each] for each in strokes)])[rows]
+    features = np.concatenate([none, *(vectors[each] for each in strokes)])[rows]
     try:
-        training = TrainingSet(positions, labels, found, classes, volume.voxel_size, "", settings)
+        training = TrainingSet(positions, labels, features, classes, volume.voxel_size, "", settings)
     except InputError as error:
         return TrainedStrokes(None, vectors, str(error))
     train(training)
@@ -233,15 +233,15 @@ def predict_slices(volume: Volume, position: tuple[int, int, int], training: Tra
     yield Started(N_("Predicting grains"))
     classifier = train(training)
     columns = [training.classes.index(each) for each in classifier.painted]
-    found: dict[int, SlicePrediction] = {}
+    predictions: dict[int, SlicePrediction] = {}
     for step in (COARSE, 1):
         for axis in (2, 1, 0):
             grain, own = _slice_probabilities(volume, classifier, axis, position[axis], step)
             every = np.zeros((*grain.shape, len(training.classes)), dtype=np.float32)
             every[..., columns] = own
-            found[axis] = SlicePrediction(axis, position[axis], every, grain)
-            yield Partial(tuple(found.values()))
-    return tuple(found.values())
+            predictions[axis] = SlicePrediction(axis, position[axis], every, grain)
+            yield Partial(tuple(predictions.values()))
+    return tuple(predictions.values())
 
 
 def _slice_probabilities(
@@ -286,8 +286,8 @@ class ClassifiedObjects:
 
     def counts(self) -> dict[str, int]:
         """Number of objects of each class."""
-        found = np.bincount(self.kinds, minlength=len(OBJECT_CLASSES)).tolist()
-        return dict(zip(OBJECT_CLASSES, found, strict=True))
+        numbers = np.bincount(self.kinds, minlength=len(OBJECT_CLASSES)).tolist()
+        return dict(zip(OBJECT_CLASSES, numbers, strict=True))
 
 
 def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Examples, scratch: Path) -> Steps:
@@ -305,21 +305,21 @@ def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Exam
         )
     with scratch_arrays(source, scratch) as arrays:
         volume: Volume = yield from read_all(source, arrays)
-        found: Segmentation = yield from segment_volume(
+        segmentation: Segmentation = yield from segment_volume(
             volume,
             settings.segmentation.uncorrected,
             arrays,
             outside=find_outside(volume, settings.region.outside),
         )
-        table: ObjectTable = yield from describe_grains(volume, found)
-        training = train_on_examples(table, found.labels, examples, scan=volume_sha256(given.path))
+        table: ObjectTable = yield from describe_grains(volume, segmentation)
+        training = train_on_examples(table, segmentation.labels, examples, scan=volume_sha256(given.path))
     return ClassifiedObjects(training, classify_objects(training, table.vectors))
 
 
-def describe_grains(grey: Volume, found: Segmentation) -> Steps:
+def describe_grains(grey: Volume, segmentation: Segmentation) -> Steps:
     """Measure all objects of a segmentation; returns their :class:`ObjectTable`."""
     yield Started(N_("Describing objects"))
-    steps = describe_objects(found.labels, grey)
+    steps = describe_objects(segmentation.labels, grey)
     while True:
         try:
             yield Progress(*next(steps))
@@ -341,14 +341,16 @@ def classify_grains(
 
 def correct_grains(
     grey: Volume,
-    found: Segmentation,
+    segmentation: Segmentation,
     settings: SegmentationSettings,
     objects: ObjectTable | None = None,
 ) -> Steps:
     """Apply the objects and edits of `settings` to a segmentation; returns :class:`GrainSegmentation`."""
     scratch = scratch_arrays(grey, scratch_folder())
     try:
-        made: Segmentation = yield from reported(correction_steps(found, grey, settings, scratch, objects))
+        made: Segmentation = yield from reported(
+            correction_steps(segmentation, grey, settings, scratch, objects)
+        )
         if scratch.folder is None:
             return GrainSegmentation(made, SliceImages(made.labels.array), scratch)
         return GrainSegmentation(made, (yield from slice_images(made.labels)), scratch)

@@ -119,9 +119,9 @@ def run_task(name: str) -> None:
         waist = Mesh(mesh.vertices * np.column_stack([np.ones(len(along)), along, along]), mesh.faces)
         coarsen(waist, 12, name, settings={"parts": 2})
     else:
-        found = coarsen(mesh, 12, name)
+        result = coarsen(mesh, 12, name)
         if name == "exact":
-            coarsen(mesh, 14, name, fewer=found.half_spaces)
+            coarsen(mesh, 14, name, fewer=result.half_spaces)
             round_start(Target.of(mesh), 12, np.random.default_rng(0))
 
 

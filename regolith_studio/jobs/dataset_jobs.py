@@ -286,12 +286,12 @@ def list_library(root: Path, results: Path | None = None) -> Steps:
     ``results``: where simulations are kept if not below `root`; those of its datasets are listed too.
     """
     yield Started(N_("Searching for datasets"))
-    found: list[CatalogEntry] = []
+    entries: list[CatalogEntry] = []
     for entry in _entries(root, results):
-        found.append(entry)
+        entries.append(entry)
         yield Partial(entry)
-        yield Progress(len(found), 0, entry.name)
-    return tuple(found)
+        yield Progress(len(entries), 0, entry.name)
+    return tuple(entries)
 
 
 def _entries(root: Path, results: Path | None) -> Iterator[CatalogEntry]:

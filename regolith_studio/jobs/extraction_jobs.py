@@ -267,8 +267,8 @@ def _handed_over(
         try:
             step = next(steps)
         except StopIteration as end:
-            found: Extraction = end.value
-            return found
+            extraction: Extraction = end.value
+            return extraction
         if sink is not None:
             sink(step.made)
         yield Progress(step.done, step.total, step.name)

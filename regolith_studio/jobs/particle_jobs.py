@@ -146,11 +146,11 @@ def find_faults(particle: Particle, visibility: StarPointVisibility | None = Non
     ``hidden``.
     """
     yield Started(N_("Checking the mesh"))
-    found: dict[str, FloatArray] = defect_triangles(particle)
+    corners: dict[str, FloatArray] = defect_triangles(particle)
     if visibility is not None and visibility.hidden_surface_share > 0.0:
         hidden = hidden_faces(particle.mesh, np.array(visibility.star_point))
-        found["hidden"] = particle.mesh.triangles[hidden]
-    return found
+        corners["hidden"] = particle.mesh.triangles[hidden]
+    return corners
 
 
 def measure_one(particle: Particle, keys: Sequence[str] = DEFAULT_KEYS) -> Steps:
@@ -291,9 +291,9 @@ def check_fit(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> Steps:
     )
 
 
-def may_be_far(reference: Descriptors, found: Descriptors) -> bool:
+def may_be_far(reference: Descriptors, descriptors: Descriptors) -> bool:
     """Whether descriptors of particle and fit, on whatever meshes, are near :data:`TOLERANCE` or beyond."""
-    return max(relative_errors(reference, found, CHECKED).values()) > _NEARLY * TOLERANCE
+    return max(relative_errors(reference, descriptors, CHECKED).values()) > _NEARLY * TOLERANCE
 
 
 def _remedy(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> Message:
@@ -311,5 +311,5 @@ def _remedy(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> Message:
 
 def _errors(mesh: Mesh, fit: HarmonicFit) -> dict[str, float]:
     surface = reconstruct(fit, level=_LEVELS[fit.l_max > _SMOOTH_DEGREE])
-    reference, found = (describe(each, keys=CHECKED) for each in (mesh, surface))
-    return relative_errors(reference, found, CHECKED)
+    reference, descriptors = (describe(each, keys=CHECKED) for each in (mesh, surface))
+    return relative_errors(reference, descriptors, CHECKED)

@@ -145,14 +145,14 @@ def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]
 
 def _by_hash(folders: Sequence[Path]) -> dict[str, int]:
     """Place of each dataset by the hash of its content."""
-    found: dict[str, int] = {}
+    places: dict[str, int] = {}
     for number, folder in enumerate(folders):
-        earlier = found.setdefault(dataset_hash(folder), number)
+        earlier = places.setdefault(dataset_hash(folder), number)
         if earlier != number:
             raise InputError(
                 f"{folders[earlier].name} and {folder.name} are the same dataset; give each once."
             )
-    return found
+    return places
 
 
 def _parameters(request: ReposeCalibrationRequest) -> list[CalibrationParameter]:

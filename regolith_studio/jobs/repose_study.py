@@ -74,8 +74,8 @@ def study_repose(
         )
     total = PROGRESS_STEPS * len(plan)
     yield Started(N_("Angle of repose: study"), total)
-    found = {number: run.finished_in(folder) for number, run in enumerate(plan)}
-    documents = {number: document for number, document in found.items() if document is not None}
+    finished = {number: run.finished_in(folder) for number, run in enumerate(plan)}
+    documents = {number: document for number, document in finished.items() if document is not None}
     missing = [number for number in range(len(plan)) if number not in documents]
     reached = dict.fromkeys(documents, PROGRESS_STEPS)
     message = ""

@@ -57,9 +57,9 @@ class RepresentativesSurvey:
 
     def chosen(self, count: int) -> "ChosenParticles | None":
         """The choice of this number, if the curve has made it."""
-        for point, found in zip(self.curve.points, self.curve.choices, strict=True):
+        for point, choice in zip(self.curve.points, self.curve.choices, strict=True):
             if point.count == count:
-                return ChosenParticles.of(self.population, found)
+                return ChosenParticles.of(self.population, choice)
         return None
 
 
@@ -73,10 +73,10 @@ class ChosenParticles:
     representation: Representation | None = None
 
     @classmethod
-    def of(cls, population: MeasuredPopulation, found: RepresentativeSelection) -> "ChosenParticles":
+    def of(cls, population: MeasuredPopulation, selection: RepresentativeSelection) -> "ChosenParticles":
         """With the places of the population's particles in the sample."""
-        places = tuple(population.kept[index] for index in found.chosen)
-        return cls(places, found, len(population.kept))
+        places = tuple(population.kept[index] for index in selection.chosen)
+        return cls(places, selection, len(population.kept))
 
     def measured(self, population: MeasuredPopulation) -> "ChosenParticles":
         """With the quality of the representation of their population."""
@@ -96,7 +96,9 @@ def measure_population(particles: Sequence[Particle], workers: int | Executor = 
             kept.append((at, one.descriptors))
     if not kept:
         raise InputError("No particle can be described, so no representatives can be chosen.")
-    return MeasuredPopulation(tuple(at for at, _ in kept), tuple(found for _, found in kept), tuple(omitted))
+    return MeasuredPopulation(
+        tuple(at for at, _ in kept), tuple(descriptors for _, descriptors in kept), tuple(omitted)
+    )
 
 
 def _problem_of(descriptors: Descriptors) -> str:
@@ -128,20 +130,20 @@ def measure_quality(population: MeasuredPopulation, request: RepresentativesRequ
             return curve
         done += 1
         yield Partial(point)
-        found = count_message(N_("1 representative"), N_("{count} representatives"), point.count)
-        yield Progress(done, len(counts), found)
+        progress = count_message(N_("1 representative"), N_("{count} representatives"), point.count)
+        yield Progress(done, len(counts), progress)
 
 
 def choose_particles(population: MeasuredPopulation, request: RepresentativesRequest) -> ChosenParticles:
     """The representatives of a population."""
-    found = choose_representatives(
+    selection = choose_representatives(
         population.descriptors,
         request.count,
         weighting=request.weighting,
         size_importance=request.size_importance,
         seed=request.seed,
     )
-    return ChosenParticles.of(population, found)
+    return ChosenParticles.of(population, selection)
 
 
 def survey_representatives(

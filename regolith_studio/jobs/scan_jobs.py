@@ -196,8 +196,8 @@ def read_all(
         try:
             yield Progress(*next(steps))
         except StopIteration as end:
-            found: Volume = end.value
-            return found
+            volume: Volume = end.value
+            return volume
 
 
 def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
@@ -205,11 +205,13 @@ def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
     yield from compile_first("scan")
     scratch = scratch_arrays(scan.volume, scratch_folder())
     try:
-        found: Segmentation = yield from segment_volume(scan.volume, settings, scratch, outside=scan.outside)
+        segmentation: Segmentation = yield from segment_volume(
+            scan.volume, settings, scratch, outside=scan.outside
+        )
         if scratch.folder is None:
-            return GrainSegmentation(found, SliceImages(found.labels.array), scratch)
+            return GrainSegmentation(segmentation, SliceImages(segmentation.labels.array), scratch)
         yield Started(N_("Preparing the view"))
-        return GrainSegmentation(found, (yield from slice_images(found.labels)), scratch)
+        return GrainSegmentation(segmentation, (yield from slice_images(segmentation.labels)), scratch)
     except BaseException:
         scratch.close()
         raise
@@ -250,10 +252,10 @@ def preview_part(scan: Scan, box: Box, settings: SegmentationSettings) -> Steps:
     yield Started(N_("Preview"))
     volume, outside = _seen_by(scan, settings)
     try:
-        found: Segmentation = preview(volume, box, settings, scan.level(settings), outside)
+        segmentation: Segmentation = preview(volume, box, settings, scan.level(settings), outside)
     except RegolithError:
         return None
-    return found
+    return segmentation
 
 
 def _seen_by(scan: Scan, settings: SegmentationSettings) -> tuple[Volume, ScanOutside | None]:

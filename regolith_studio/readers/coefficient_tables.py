@@ -81,8 +81,8 @@ def read_coefficients(
     try:
         if rows.shape[1] < 4:
             points = " Points alone enclose no particle." if rows.shape[1] == 3 else ""
-            found = plural(rows.shape[1], "column")
-            raise InputError(f"has {found}; a table of coefficients has four: l m Re Im.{points}")
+            columns = plural(rows.shape[1], "column")
+            raise InputError(f"has {columns}; a table of coefficients has four: l m Re Im.{points}")
         notes: tuple[str, ...] = ()
         if convention == "auto":
             convention = _convention(rows, bool(answer.header["commas"]))

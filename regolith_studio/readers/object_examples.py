@@ -31,7 +31,7 @@ def read_object_examples(
             "class, separated by commas."
         )
     rows.fieldnames = names
-    found = []
+    examples = []
     for row in rows:
         kind = (row["class"] or "").strip()
         try:
@@ -43,5 +43,5 @@ def read_object_examples(
                 f"{display_name(path)}: line {rows.line_num} is no example; give three whole numbers and one "
                 f"of {', '.join(classes)}."
             )
-        found.append(((x, y, z), classes.index(kind)))
-    return tuple(found)
+        examples.append(((x, y, z), classes.index(kind)))
+    return tuple(examples)

@@ -311,20 +311,20 @@ def mesh_files(
     several = sum(path.is_dir() or is_archive(path) for path in given) > 1
     files: list[MeshFile] = []
     for path in given:
-        found = list(_in_folder(path, several)) if path.is_dir() else [MeshFile(path)]
+        in_folder = list(_in_folder(path, several)) if path.is_dir() else [MeshFile(path)]
         refused: list[FileProblem] = []
-        found = [each for file in found for each in _with_members(file, refused, several)]
-        if not found and len(refused) == 1:
+        in_folder = [each for file in in_folder for each in _with_members(file, refused, several)]
+        if not in_folder and len(refused) == 1:
             raise FileError(refused[0].sentence)
         if problems is not None:
             problems += refused
-        if not found:
+        if not in_folder:
             raise FileError(
                 f"The {'folder' if path.is_dir() else 'archive'} {display_name(path)} holds no mesh file; "
                 f"meshes end in {', '.join(sorted(mesh_suffixes()))}, tables of coefficients in "
                 f"{', '.join(TABLE_SUFFIXES)}."
             )
-        files += found
+        files += in_folder
     folders = {file.path.parent for file in files if file.member is None}
     lists = {folder: listed_hashes(folder) for folder in folders}
     weights = {folder: read_weights(folder, lists[folder]) for folder in folders}
@@ -456,19 +456,19 @@ def read_weights(folder: Path, listed: Mapping[str, str] | None = None) -> dict[
     Raises FileError if the SHA-256 of the table is `listed` and another.
     """
     path = folder / WEIGHTS_FILE
-    found: dict[str, float] = {}
+    weights: dict[str, float] = {}
     try:
         if not path.is_file() or path.stat().st_size > MAX_TABLE_BYTES:
-            return found
+            return weights
         check_listed(path.name, sha256_of(path), listed or {})
         with path.open(encoding="utf-8-sig", newline="") as file:
             for row in read_csv(file):
                 weight = float(row["weight"] or 1.0)
                 if row["name"] and 0.0 < weight < math.inf:
-                    found[file_stem(row["name"])] = weight
+                    weights[file_stem(row["name"])] = weight
     except (OSError, ValueError, TypeError, KeyError, csv.Error):
         return {}
-    return found
+    return weights
 
 
 def sample_particles() -> list[Particle]:

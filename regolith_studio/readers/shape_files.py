@@ -70,17 +70,17 @@ def read_shape_source(text: str) -> ShapeSource:
     if not path.exists() and text in materials():
         return ShapeSource(materials()[text], text)
     content = read_bytes(path, MAX_TEXT_BYTES)
-    found = hashlib.sha256(content).hexdigest()
-    check_listed(path.name, found, listed_hashes(path.parent))
+    digest = hashlib.sha256(content).hexdigest()
+    check_listed(path.name, digest, listed_hashes(path.parent))
     document = _document(path, content)
     kind = document.get("format")
     try:
         if kind == fit_io.FORMAT:
-            return _sample(path, document, found)
+            return _sample(path, document, digest)
         if kind == model_io.FORMAT:
-            return ShapeSource(_model(path, document), path.stem, found)
+            return ShapeSource(_model(path, document), path.stem, digest)
         if "relative_amplitudes" in document:
-            return ShapeSource(_in_micrometres(card_from(content, path.name)), path.stem, found)
+            return ShapeSource(_in_micrometres(card_from(content, path.name)), path.stem, digest)
     except FileError:
         raise
     except InputError as error:

@@ -67,7 +67,7 @@ def _exposed_facet(compound: ConvexCompound, index: int) -> Facet:
     mesh, areas = compound.mesh, compound.exposed_areas
     faces = mesh.faces[compound.triangle_facets == index]
     ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    _, found, uses = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, uses = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_counts=True)
     corners = mesh.vertices[faces]
     sizes = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     normals, offsets = (np.concatenate(each) for each in zip(*compound.part_planes, strict=True))
@@ -78,7 +78,7 @@ def _exposed_facet(compound: ConvexCompound, index: int) -> Facet:
         float(areas[index] / areas.sum()),
         normals[index],
         float(offsets[index]),
-        mesh.vertices[ends[found[uses == 1]]],
+        mesh.vertices[ends[first[uses == 1]]],
         corners[sizes.argmax()].mean(axis=0),
         int(compound.facet_parts[index]),
     )

@@ -290,12 +290,12 @@ def repose_export_steps(run_folder: Path, folder: Path, every: int = 1) -> Steps
 
 def _states(folder: Path, every: int) -> list[Path]:
     """Every so many snapshots of a run, and its last moment."""
-    found = snapshot_files(folder)
+    snapshots = snapshot_files(folder)
     if (folder / FINAL).is_file():
-        found.append(folder / FINAL)
-    if not found:
+        snapshots.append(folder / FINAL)
+    if not snapshots:
         raise FileError(f"{folder} holds no snapshots of its run.")
-    return [*found[:-1:every], found[-1]]
+    return [*snapshots[:-1:every], snapshots[-1]]
 
 
 class _StageWriter:

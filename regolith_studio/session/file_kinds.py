@@ -98,6 +98,6 @@ def _kind_of_json(path: Path) -> FileKind:
             content = file.read(_SNIFFED)
     except OSError:
         return FileKind.RECIPE  # whose reader says what is wrong
-    if found := _FORMAT.search(content):
-        return _BY_FORMAT.get(found[1], FileKind.UNKNOWN)
+    if match := _FORMAT.search(content):
+        return _BY_FORMAT.get(match[1], FileKind.UNKNOWN)
     return FileKind.SHAPES if b'"relative_amplitudes"' in content else FileKind.RECIPE

@@ -272,7 +272,11 @@ class LiveResults:
         results, metric = self._session.results, self._session.choices.box_metric
         particle = self._entry().particle.mesh
         job = Job(compare_with_particle, (particle, results.particle_descriptors, results.coarsened, metric))
-        return job, lambda found: self._session.update("comparison", against_particle=found), _ignore
+        return (
+            job,
+            lambda comparison: self._session.update("comparison", against_particle=comparison),
+            _ignore,
+        )
 
 
 def _key(kind: Kind, choices: Choices) -> tuple[Any, ...]:

@@ -68,12 +68,14 @@ def redundant_planes(coarsened: CoarseningResult) -> str | None:
     return Message(template, real=coarsened.n_facets, asked=coarsened.n_facets_asked)
 
 
-def cost_of_imitating_the_fit(found: ParticleComparison) -> str:
+def cost_of_imitating_the_fit(comparison: ParticleComparison) -> str:
     """The largest error of a fit's polyhedron against the particle itself, as a sentence."""
-    worst = max(LOSS_KEYS, key=lambda key: found.errors[key])
+    worst = max(LOSS_KEYS, key=lambda key: comparison.errors[key])
     template = N_("Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.")
-    distance = _percent(found.jaccard_distance)
-    return Message(template, symbol=_symbol(worst), error=_percent(found.errors[worst]), distance=distance)
+    distance = _percent(comparison.jaccard_distance)
+    return Message(
+        template, symbol=_symbol(worst), error=_percent(comparison.errors[worst]), distance=distance
+    )
 
 
 def _met(coarsened: CoarseningResult, chosen: list[str]) -> str:

@@ -236,8 +236,8 @@ class CalibrationTarget:
 
     def distance(self, outer: FloatArray) -> float:
         """Mean difference of quantiles over the standard deviation, summed over the outer features."""
-        wanted, found = (np.quantile(table, _QUANTILES, axis=0) for table in (self.outer, outer))
-        return float((np.abs(found - wanted).mean(axis=0) / (self.outer.std(axis=0) + 1e-9)).sum())
+        wanted, quantiles = (np.quantile(table, _QUANTILES, axis=0) for table in (self.outer, outer))
+        return float((np.abs(quantiles - wanted).mean(axis=0) / (self.outer.std(axis=0) + 1e-9)).sum())
 
     def corrected(
         self, offset: CalibrationOffset, numbers: FloatArray, outer: FloatArray

@@ -71,8 +71,8 @@ class ChunkedSampler(ABC):
         Raises InputError as :meth:`draw_chunks`, or if the particles need more memory than there is.
         """
         check_draws(n, self.l_max)
-        found = list(self.draw_chunks(n, seed, size_range))
-        return joined(found) if found else replace(next(self.draw_chunks(1, seed)).chosen([]), rejected=0)
+        chunks = list(self.draw_chunks(n, seed, size_range))
+        return joined(chunks) if chunks else replace(next(self.draw_chunks(1, seed)).chosen([]), rejected=0)
 
 
 class SizedSampler(ChunkedSampler):

@@ -130,7 +130,7 @@ def hull_grid(degree: int, l_max: int) -> HullGrid:
     cosines = grid.directions @ grid.directions.T
     near = np.logical_or.reduceat(cosines > 0, np.arange(0, len(cosines), ROWS), axis=0)
     reaches = np.column_stack([near.argmax(axis=1), len(cosines) - near[:, ::-1].argmax(axis=1)])
-    found = HullGrid(grid, cosines.astype(np.float32), reaches)
-    for array in (found.cosines, found.reaches):
+    hull = HullGrid(grid, cosines.astype(np.float32), reaches)
+    for array in (hull.cosines, hull.reaches):
         array.flags.writeable = False
-    return found
+    return hull

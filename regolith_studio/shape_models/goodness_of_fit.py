@@ -42,8 +42,10 @@ def nearest_over_rotations(measured: FloatArray, drawn: FloatArray) -> tuple[Flo
     -------
     Root-mean-square differences of the radii, and indices of measured particles, shapes (m,).
     """
-    found = [_nearest(measured, row) for row in drawn]
-    return np.array([distance for distance, _ in found]), np.array([index for _, index in found], np.int64)
+    nearest = [_nearest(measured, row) for row in drawn]
+    return np.array([distance for distance, _ in nearest]), np.array(
+        [index for _, index in nearest], np.int64
+    )
 
 
 def distances_among(measured: FloatArray, picks: IntArray) -> FloatArray:

@@ -75,12 +75,12 @@ def canonical(coefficients: FloatArray) -> FloatArray:
     The longest extent along x, the shortest along z; x and y point to the heavier side (third moment).
     Mirror images stay different.
     """
-    found = principal_axes(coefficients)
+    principal = principal_axes(coefficients)
     rows = np.empty_like(coefficients)
-    scales = np.cbrt(3 * found.volumes / (4 * np.pi))
+    scales = np.cbrt(3 * principal.volumes / (4 * np.pi))
     for i, row in enumerate(coefficients):
-        frame = found.axes[i, :, ::-1].T
-        frame = frame * np.where(found.skews[i, ::-1] < 0, -1.0, 1.0)[:, None]
+        frame = principal.axes[i, :, ::-1].T
+        frame = frame * np.where(principal.skews[i, ::-1] < 0, -1.0, 1.0)[:, None]
         frame[2] = np.cross(frame[0], frame[1])  # not by its own moment, which would mirror some particles
         rows[i] = rotated(ShCoefficients(row), frame).values / scales[i]
     return rows
@@ -117,8 +117,8 @@ def with_forms(log_radii: FloatArray, wanted: FloatArray, grid: SphereGrid, step
     `steps` leaves about a tenth of the difference.
     """
     for _ in range(steps):
-        found, axes = forms(log_radii, grid)
-        log_radii = log_radii + log_ellipsoids(grid.directions, wanted - found, axes)
+        current, axes = forms(log_radii, grid)
+        log_radii = log_radii + log_ellipsoids(grid.directions, wanted - current, axes)
     return log_radii
 
 

@@ -291,7 +291,7 @@ class SurfaceSampler(SizedSampler):
         """A copy with another calibration, which shares what has been found of the measured particles."""
         better = replace(self, **changes)
         names = {each.name for each in fields(self)}
-        better.__dict__.update({name: found for name, found in self.__dict__.items() if name not in names})
+        better.__dict__.update({name: value for name, value in self.__dict__.items() if name not in names})
         return better
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

@@ -164,10 +164,10 @@ def component_names(names: Sequence[str], k: int) -> tuple[str, ...]:
 
     Raises InputError if there are not as many.
     """
-    found = tuple(names) or tuple(f"part {i + 1}" for i in range(k))
-    if len(found) != k:
-        raise InputError(f"A mixture of {k} parts needs {k} names, got {len(found)}.")
-    return found
+    labels = tuple(names) or tuple(f"part {i + 1}" for i in range(k))
+    if len(labels) != k:
+        raise InputError(f"A mixture of {k} parts needs {k} names, got {len(labels)}.")
+    return labels
 
 
 def chosen_mixture(

@@ -154,14 +154,14 @@ def positive_rows(coefficients: FloatArray) -> BoolArray:
 def _lowest_on_icosphere(coefficients: FloatArray) -> tuple[FloatArray, IntArray]:
     """Lowest radius on the fine icosphere and its vertex, for each row; a block of vertices at a time."""
     vertices, l_max = icosphere(CLOSE_LEVEL).vertices, isqrt(coefficients.shape[1]) - 1
-    lowest, found = np.full(len(coefficients), np.inf), np.zeros(len(coefficients), dtype=np.int64)
+    lowest, vertex = np.full(len(coefficients), np.inf), np.zeros(len(coefficients), dtype=np.int64)
     for first in range(0, len(vertices), CLOSE_BLOCK):
         values = coefficients @ harmonics(vertices[first : first + CLOSE_BLOCK], l_max)
         places = values.argmin(axis=1)
         block = values[np.arange(len(values)), places]
-        found[block < lowest] = first + places[block < lowest]
+        vertex[block < lowest] = first + places[block < lowest]
         lowest = np.minimum(lowest, block)
-    return lowest, found
+    return lowest, vertex
 
 
 def _lowest_about(coefficients: FloatArray, vertex: int) -> float:

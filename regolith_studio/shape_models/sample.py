@@ -195,9 +195,9 @@ class LogShapes:
         """P_l = sum over m of the squared coefficients, shape (n, l_max + 1); P_0 is set to zero."""
         length = self.coefficients.shape[1]
         starts = np.arange(round(length**0.5)) ** 2
-        found = np.add.reduceat(self.coefficients**2, starts, axis=1)
-        found[:, 0] = 0.0
-        return np.asarray(found)
+        sums = np.add.reduceat(self.coefficients**2, starts, axis=1)
+        sums[:, 0] = 0.0
+        return np.asarray(sums)
 
 
 def log_shapes(sample: Sample) -> LogShapes:
@@ -236,5 +236,5 @@ def directed(powers: FloatArray, rng: np.random.Generator) -> FloatArray:
     n, length = len(powers), powers.shape[1] ** 2
     rows = rng.standard_normal((n, length))
     starts = np.arange(powers.shape[1]) ** 2
-    found = np.add.reduceat(rows**2, starts, axis=1)
-    return np.asarray(rows * np.sqrt(powers / found)[:, degrees(length)])
+    directed_powers = np.add.reduceat(rows**2, starts, axis=1)
+    return np.asarray(rows * np.sqrt(powers / directed_powers)[:, degrees(length)])

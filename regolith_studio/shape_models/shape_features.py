@@ -78,11 +78,11 @@ def log_share(shares: FloatArray) -> FloatArray:
 
 def _of_batch(coefficients: FloatArray) -> FloatArray:
     shapes = shape_grid(round(coefficients.shape[1] ** 0.5) - 1)
-    found = principal_axes(coefficients)
-    form = np.diff(found.log_ratios, axis=1)[:, ::-1]
+    principal = principal_axes(coefficients)
+    form = np.diff(principal.log_ratios, axis=1)[:, ::-1]
     means = coefficients[:, :1] / np.sqrt(4 * np.pi)
     radii = np.maximum(shapes.grid.values(coefficients) / means, _MIN_RADIUS)
-    return _table(shapes, np.log(3 * found.volumes / (4 * np.pi)) / 3, form, found.axes, radii)
+    return _table(shapes, np.log(3 * principal.volumes / (4 * np.pi)) / 3, form, principal.axes, radii)
 
 
 def _table(
@@ -165,8 +165,8 @@ def _slope_bases(l_max: int) -> tuple[FloatArray, FloatArray]:
 
     def slope(tangent: FloatArray) -> FloatArray:
         ends = [harmonics(np.cos(_STEP) * u + sign * np.sin(_STEP) * tangent, l_max) for sign in (1, -1)]
-        found = (ends[0] - ends[1]) / (2 * _STEP)
-        found.flags.writeable = False
-        return found
+        gradient = (ends[0] - ends[1]) / (2 * _STEP)
+        gradient.flags.writeable = False
+        return gradient
 
     return slope(first), slope(np.cross(u, first))

@@ -278,9 +278,9 @@ def _fit(
 
 def _predict(models: _Models, places: FloatArray, target: WantedResult) -> tuple[FloatArray, FloatArray]:
     """Means and standard deviations of each process in the unit of the result, shape (h, m)."""
-    found = [process.predict(places, return_std=True) for process in models.processes]
-    means = np.array([mean for mean, _ in found])
-    return target.value + target.scale * means, target.scale * np.array([spread for _, spread in found])
+    predictions = [process.predict(places, return_std=True) for process in models.processes]
+    means = np.array([mean for mean, _ in predictions])
+    return target.value + target.scale * means, target.scale * np.array([spread for _, spread in predictions])
 
 
 def _mixture(weights: FloatArray, means: FloatArray, deviations: FloatArray) -> tuple[FloatArray, FloatArray]:

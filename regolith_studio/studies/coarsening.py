@@ -125,10 +125,10 @@ def coarsening_errors(
         goal = Target.of((target or TargetChoice()).mesh_of(mesh))
         wanted = describe(goal.mesh, LOSS_KEYS, box_metric)
         results = coarsened_rows(goal, rows, seed)
-        table = [_row_errors(found, wanted, box_metric) for found in results]
+        table = [_row_errors(result, wanted, box_metric) for result in results]
     except RegolithError as error:
         return str(error)
-    return np.array(table), tuple(found.reason is None for found in results)
+    return np.array(table), tuple(result.reason is None for result in results)
 
 
 def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> list[CoarseningResult]:
@@ -141,28 +141,28 @@ def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> li
     for row in rows:
         settings = dict(row.settings_run)
         alike = [
-            found
-            for earlier, found in zip(rows, results, strict=False)
+            result
+            for earlier, result in zip(rows, results, strict=False)
             if earlier.n_facets < row.n_facets
             and row.relabelled(earlier.label, n_facets=earlier.n_facets) == earlier
         ]
-        fewer = min(alike, key=lambda found: (found.reason is not None, found.loss), default=None)
+        fewer = min(alike, key=lambda result: (result.reason is not None, result.loss), default=None)
         start = None if fewer is None else fewer.half_spaces
         results.append(coarsen(target, row.n_facets, row.method_run, row.weights, seed, settings, start))
     return results
 
 
-def _row_errors(found: CoarseningResult, wanted: Any, box_metric: str) -> list[float]:
+def _row_errors(result: CoarseningResult, wanted: Any, box_metric: str) -> list[float]:
     """Errors of the polyhedron that the method returned, which is also what a gallery shows."""
     if box_metric == "exact":
-        errors = dict(found.errors)
+        errors = dict(result.errors)
     else:
-        errors = relative_errors(wanted, describe(_in_unit_frame(found), LOSS_KEYS, box_metric))
-    return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance]
+        errors = relative_errors(wanted, describe(_in_unit_frame(result), LOSS_KEYS, box_metric))
+    return [*[errors[key] for key in LOSS_KEYS], result.jaccard_distance]
 
 
-def _in_unit_frame(found: CoarseningResult) -> Polyhedron:
-    return found.polyhedron.moved(scale=found.target["volume"] ** (-1 / 3))
+def _in_unit_frame(result: CoarseningResult) -> Polyhedron:
+    return result.polyhedron.moved(scale=result.target["volume"] ** (-1 / 3))
 
 
 def coarsening_study(

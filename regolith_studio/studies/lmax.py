@@ -127,10 +127,10 @@ def lmax_errors(
     errors = np.full((len(degrees), len(keys)), np.nan)
     for row, (coarse, fine) in enumerate(_surfaces(fit, degrees)):
         if coarse is not None and fine is not None:
-            found = dict(describe(fine, keys))
+            values = dict(describe(fine, keys))
             for key, value in describe(coarse, [key for key in keys if key in EXTRAPOLATED]).items():
-                found[key] += (found[key] - value) / 3
-            errors[row] = [found[key] / wanted[key] - 1 for key in keys]
+                values[key] += (values[key] - value) / 3
+            errors[row] = [values[key] / wanted[key] - 1 for key in keys]
     return errors
 
 
@@ -222,12 +222,12 @@ def enough_degrees(study: LmaxStudy, tolerance: float) -> str:
     for group in study.group_names:
         degree = study.smallest_l_max(tolerance, group)
         whose = f" of {group}" if group else ""
-        found = (
+        degrees = (
             f"l_max = {degree} is the smallest"
             if degree is not None
             else "No l_max that was studied is enough"
         )
-        sentences.append(f"{found} with every RMSRE{whose} below {100 * tolerance:g} %.")
+        sentences.append(f"{degrees} with every RMSRE{whose} below {100 * tolerance:g} %.")
     return "\n".join(sentences)
 
 

@@ -33,16 +33,16 @@ class GalleryPolyhedron:
     reason: str | None
 
     @classmethod
-    def of(cls, found: CoarseningResult) -> "GalleryPolyhedron":
+    def of(cls, result: CoarseningResult) -> "GalleryPolyhedron":
         """Of a particle just coarsened."""
         return cls(
-            found.method,
-            found.polyhedron,
-            found.errors,
-            found.jaccard_distance,
-            found.loss,
-            found.bounds,
-            found.reason,
+            result.method,
+            result.polyhedron,
+            result.errors,
+            result.jaccard_distance,
+            result.loss,
+            result.bounds,
+            result.reason,
         )
 
     @classmethod
@@ -105,8 +105,8 @@ class GalleryStudy:
 def gallery_table(study: GalleryStudy) -> Table:
     """Facets, errors and what no polyhedron can do better, a line a picture."""
     lines = [
-        (study.rows[row], study.names[column], *_numbers(found))
-        for (row, column), found in sorted(study.cells.items(), key=lambda item: item[0])
+        (study.rows[row], study.names[column], *_numbers(cell))
+        for (row, column), cell in sorted(study.cells.items(), key=lambda item: item[0])
     ]
     counts = ("method", "facets", "vertices", "triangles")
     errors = [Column(key, "%") for key in (*LOSS_KEYS, JACCARD)]
@@ -116,12 +116,12 @@ def gallery_table(study: GalleryStudy) -> Table:
     return Table("Polyhedra by loss and particle", columns, tuple(lines), notes)
 
 
-def _numbers(found: GalleryPolyhedron | str) -> tuple[Cell, ...]:
-    if isinstance(found, str):
-        return (*(None,) * (4 + 2 * (len(LOSS_KEYS) + 1) + 1), found)
-    errors = [100 * found.errors[key] for key in LOSS_KEYS]
-    held = bounds_in_force(found.bounds, found.errors)
+def _numbers(cell: GalleryPolyhedron | str) -> tuple[Cell, ...]:
+    if isinstance(cell, str):
+        return (*(None,) * (4 + 2 * (len(LOSS_KEYS) + 1) + 1), cell)
+    errors = [100 * cell.errors[key] for key in LOSS_KEYS]
+    held = bounds_in_force(cell.bounds, cell.errors)
     bounds = [100 * held[key] for key in (*LOSS_KEYS, JACCARD)]
-    solid = found.polyhedron
-    counts = (found.method, solid.n_facets, solid.n_vertices, solid.n_triangles)
-    return (*counts, *errors, 100 * found.jaccard_distance, *bounds, found.loss, found.reason)
+    solid = cell.polyhedron
+    counts = (cell.method, solid.n_facets, solid.n_vertices, solid.n_triangles)
+    return (*counts, *errors, 100 * cell.jaccard_distance, *bounds, cell.loss, cell.reason)

@@ -112,24 +112,24 @@ class StudyExecutor:
         self, work: Callable[[Any], Any], parts: Iterable[Any], message: str
     ) -> Generator[StudyProgress, None, list[Any]]:
         """The result of each part, in order."""
-        found = []
+        results = []
         for result in self.mapper(work, parts):
             if result is not None:
-                found.append(result)
+                results.append(result)
             yield self.progress(message)
-        return found
+        return results
 
     def drawn(
         self, task: FitTask, message: str
     ) -> Generator[StudyProgress, None, tuple[tuple[Realizations, ...], tuple[float, ...]]]:
         """As :func:`fit_and_draw`, by one process."""
-        found: tuple[tuple[Realizations, ...], tuple[float, ...]] = (), ()
+        sampled: tuple[tuple[Realizations, ...], tuple[float, ...]] = (), ()
         yield self.progress(message)
         for answer in self.mapper(fit_and_draw, (task,)):
             if answer is not None:
-                found = answer
+                sampled = answer
             yield self.progress(message)
-        return found
+        return sampled
 
 
 def descriptors_of(draws: Realizations, keys: tuple[str, ...], level: int = MESH_LEVEL) -> FloatArray:
@@ -140,10 +140,10 @@ def descriptors_of(draws: Realizations, keys: tuple[str, ...], level: int = MESH
 
 def _descriptor_row(draws: Realizations, index: int, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
     try:
-        found = describe(virtual_mesh(draws, index, level), keys)
+        descriptors = describe(virtual_mesh(draws, index, level), keys)
     except RegolithError:
         return (np.nan,) * len(keys)
-    return tuple(found[key] for key in keys)
+    return tuple(descriptors[key] for key in keys)
 
 
 def frames_of(draws: Realizations, l_max: int) -> FloatArray:
@@ -372,13 +372,13 @@ class _TrainTestSplit:
 
     def floor(self, seed: int) -> Generator[StudyProgress, None, PopulationDistances]:
         """Distances between random halves of the sample."""
-        found = []
+        rows = []
         for split in range(N_FLOOR_SPLITS):
             train, test = self.sample.halves(seed + split)
             pair = (self.table[test], self.table[train])
-            found.append(distances([pair], seed, self.work.size_column, first=split))
+            rows.append(distances([pair], seed, self.work.size_column, first=split))
             yield self.work.progress(Message(N_("noise of sampling, split {split}"), split=split + 1))
-        return PopulationDistances.joined(found)
+        return PopulationDistances.joined(rows)
 
     def rounds(
         self, key: str, options: Any, split: int, plan: tuple[int, int, int]
@@ -392,7 +392,7 @@ class _TrainTestSplit:
         drawn, criterion = yield from self.work.drawn(
             task, Message(N_("{name}, split {split}, fit"), **label)
         )
-        found = []
+        results = []
         for repeat, draws in enumerate(drawn):
             message = Message(N_("{name}, split {split}, draw {draw}"), draw=repeat + 1, **label)
             table = yield from self.work.measured(draws, message)
@@ -401,8 +401,8 @@ class _TrainTestSplit:
             apart = distances([(self.table[test], table)], seeds[repeat], self.work.size_column)
             yield self.work.progress(message)
             ends = intervals(self.table[test], table, apart, seeds[repeat], self.work.size_column)
-            found.append(_Round(apart, ends, new, 1 - draws.acceptance, table, criterion, draws.l_max))
-        return found
+            results.append(_Round(apart, ends, new, 1 - draws.acceptance, table, criterion, draws.l_max))
+        return results
 
     def _novelty(
         self, train: IntArray, draws: Realizations, message: str
@@ -415,8 +415,8 @@ class _TrainTestSplit:
         parts = [picks[i : i + NOVEL_BATCH] for i in range(0, len(picks), NOVEL_BATCH)]
         own = yield from self.work.gathered(partial(distances_among, measured), parts, message)
         rows = [drawn[i : i + NOVEL_BATCH] for i in range(0, len(drawn), NOVEL_BATCH)]
-        found = yield from self.work.gathered(partial(nearest_over_rotations, measured), rows, message)
-        distances, nearest = (np.concatenate([each[k] for each in found]) for k in (0, 1))
+        novelty = yield from self.work.gathered(partial(nearest_over_rotations, measured), rows, message)
+        distances, nearest = (np.concatenate([each[k] for each in novelty]) for k in (0, 1))
         ratio = float(np.median(distances)) / max(float(np.median(np.concatenate(own))), 1e-300)
         return ratio, float((nearest == np.asarray(first.parents)).mean())
 

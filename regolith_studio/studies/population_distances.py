@@ -85,9 +85,13 @@ def distances(
 
 
 def intervals(
-    measured: FloatArray, drawn: FloatArray, found: PopulationDistances, seed: int, size_column: int | None
+    measured: FloatArray,
+    drawn: FloatArray,
+    distances: PopulationDistances,
+    seed: int,
+    size_column: int | None,
 ) -> Intervals:
-    """Of one round, whose distances are `found`, by :data:`N_RESAMPLES` resamples of the particles."""
+    """Of one round, whose distances are `distances`, by :data:`N_RESAMPLES` resamples of the particles."""
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1,)))
     counts = [rng.multinomial(len(t), np.full(len(t), 1 / len(t)), N_RESAMPLES) for t in (measured, drawn)]
     shape = (2, len(WEIGHTINGS), measured.shape[1])
@@ -98,8 +102,8 @@ def intervals(
             far, gap = resampled_distances(
                 measured[:, j], drawn[:, j], pair[0] * counts[0], pair[1] * counts[1], pair[0]
             )
-            near[:, w, j] = _interval(far, found.wasserstein[0, w, j])
-            gaps[:, w, j] = _interval(gap, found.kolmogorov[0, w, j])
+            near[:, w, j] = _interval(far, distances.wasserstein[0, w, j])
+            gaps[:, w, j] = _interval(gap, distances.kolmogorov[0, w, j])
     return Intervals(near, gaps)
 
 
@@ -115,9 +119,9 @@ def class_weights(table: FloatArray, weighting: str, size_column: int | None) ->
     return np.asarray(table[:, size_column] ** 3)
 
 
-def _interval(resampled: FloatArray, found: float) -> FloatArray:
+def _interval(resampled: FloatArray, estimate: float) -> FloatArray:
     low, high = np.quantile(resampled, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
-    return np.asarray(np.maximum(np.array([low, high]) - (resampled.mean() - found), 0.0))
+    return np.asarray(np.maximum(np.array([low, high]) - (resampled.mean() - estimate), 0.0))
 
 
 MIN_COMPARED = 20
@@ -181,15 +185,15 @@ class DistributionComparison:
         first = np.zeros((_N_NOISE, len(pool)))
         first[:, :n] = 1.0
         first = rng.permuted(first, axis=1)
-        found = np.empty((2, len(WEIGHTINGS), len(self.keys), _N_NOISE))
+        distances = np.empty((2, len(WEIGHTINGS), len(self.keys), _N_NOISE))
         for w, weighting in enumerate(WEIGHTINGS):
             weights = class_weights(pool, weighting, self._size_column)
             own = np.concatenate([weights[:n], np.zeros(len(self.drawn))])
             for k, column in enumerate(pool.T):
                 parts = (weights * first, weights * (1.0 - first))
-                found[:, w, k] = resampled_distances(column, column, *parts, own)
-        mean = found.mean(axis=-1)
-        largest = (found / np.maximum(mean, 1e-300)[..., None]).max(axis=(0, 1, 2))
+                distances[:, w, k] = resampled_distances(column, column, *parts, own)
+        mean = distances.mean(axis=-1)
+        largest = (distances / np.maximum(mean, 1e-300)[..., None]).max(axis=(0, 1, 2))
         return SamplingNoise(mean, float(np.quantile(largest, CONFIDENCE)))
 
     def in_noise(self, table: FloatArray | None = None) -> FloatArray:
@@ -254,13 +258,13 @@ class DistributionComparison:
         return self.keys.index("equivalent_radius") if "equivalent_radius" in self.keys else None
 
     def _apart(self, table: FloatArray) -> FloatArray:
-        found = np.empty((2, len(WEIGHTINGS), len(self.keys)))
+        distances = np.empty((2, len(WEIGHTINGS), len(self.keys)))
         for w, weighting in enumerate(WEIGHTINGS):
             weights = [class_weights(each, weighting, self._size_column) for each in (self.measured, table)]
             for k in range(len(self.keys)):
                 pair = (self.measured[:, k], table[:, k], *weights)
-                found[:, w, k] = relative_wasserstein(*pair), kolmogorov_smirnov(*pair)
-        return found
+                distances[:, w, k] = relative_wasserstein(*pair), kolmogorov_smirnov(*pair)
+        return distances
 
     def _distribution(self, table: FloatArray, key: str, weighting: str) -> Distribution:
         return Distribution(

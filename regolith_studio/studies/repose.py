@@ -75,8 +75,8 @@ class ReposeStudyRun:
     @property
     def angle(self) -> float | None:
         """In degrees, or ``None`` where there is no pile."""
-        found = (self.document.get("measurement") or {}).get("angle_deg")
-        return None if found is None else float(found)
+        degrees = (self.document.get("measurement") or {}).get("angle_deg")
+        return None if degrees is None else float(degrees)
 
 
 @dataclass(frozen=True)
@@ -305,13 +305,13 @@ def fit_repose_surface(
     return ReposeSurface(study, rows, fit_response_surface(keys, values, means))
 
 
-def surface_table(found: ReposeSurface) -> Table:
+def surface_table(surface: ReposeSurface) -> Table:
     """One row a dataset: its statistics, the mean angle of its runs, and that of the surface."""
-    mean, half = found.surface.predict(found.statistics)
-    angles = [found.study.angles(value) for value in found.study.values]
+    mean, half = surface.surface.predict(surface.statistics)
+    angles = [surface.study.angles(value) for value in surface.study.values]
     columns = (
         Column("dataset"),
-        *map(Column, found.surface.factors),
+        *map(Column, surface.surface.factors),
         Column("runs"),
         Column("angle", "deg"),
         Column("surface", "deg"),
@@ -321,15 +321,15 @@ def surface_table(found: ReposeSurface) -> Table:
     rows = tuple(
         (str(value), *place.tolist(), len(own), float(np.mean(own)) if own else None, m, m - h, m + h)
         for value, place, own, m, h in zip(
-            found.study.values, found.statistics, angles, mean.tolist(), half.tolist(), strict=True
+            surface.study.values, surface.statistics, angles, mean.tolist(), half.tolist(), strict=True
         )
     )
     return Table(N_("Angle of repose against shape statistics"), columns, rows)
 
 
-def surface_document(found: ReposeSurface) -> dict[str, Any]:
+def surface_document(fitted: ReposeSurface) -> dict[str, Any]:
     """The terms of the surface and the effect of each statistic as JSON; angles in degrees."""
-    surface = found.surface
+    surface = fitted.surface
     change, half = surface.effects()
     return {
         "kind": "quadratic" if surface.is_quadratic else "linear",

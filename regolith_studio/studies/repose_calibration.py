@@ -125,14 +125,14 @@ class ReposeCalibration:
 
     def _extended(self, runs: tuple[CalibrationRun, ...]) -> "ReposeCalibration":
         names = [each.name for each in self.targets]
-        found = CalibrationRuns.of(
+        extended = CalibrationRuns.of(
             [run.values for run in runs],
             [[run.result(name) for name in names] for run in runs],
             [[run.error(name) for name in names] for run in runs],
             len(self.parameters),
             len(self.targets),
         )
-        posterior = calibrate(self.parameters, self.targets, found)
+        posterior = calibrate(self.parameters, self.targets, extended)
         return ReposeCalibration(self.parameters, self.targets, runs, (*self.posteriors, posterior))
 
 

@@ -59,12 +59,12 @@ def parse_values(text: str) -> tuple[float, ...]:
     Raises InputError if a word is no number, or there is none.
     """
     try:
-        found = tuple(float(word) for word in text.split(",") if word.strip())
+        values = tuple(float(word) for word in text.split(",") if word.strip())
     except ValueError:
-        found = ()
-    if not found or not np.isfinite(found).all():
+        values = ()
+    if not values or not np.isfinite(values).all():
         raise InputError(f"Write numbers with commas between them, such as 8, 20, 50; got {text!r}.")
-    return found
+    return values
 
 
 def descriptor_error(rmsre: FloatArray) -> FloatArray:

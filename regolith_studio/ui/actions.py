@@ -46,9 +46,9 @@ class Command:
 def matches(commands: Sequence[Command], typed: str) -> list[Command]:
     """Commands that have every typed word, those that begin with it first."""
     words = typed.lower().split()
-    found = [each for each in commands if all(word in each.title.lower() for word in words)]
+    matching = [each for each in commands if all(word in each.title.lower() for word in words)]
     first = words[0] if words else ""
-    return sorted(found, key=lambda each: not each.text.lower().startswith(first))
+    return sorted(matching, key=lambda each: not each.text.lower().startswith(first))
 
 
 class CommandPalette(QDialog):
@@ -94,10 +94,10 @@ class CommandPalette(QDialog):
         self.list.setCurrentRow(0)
 
     def _run(self) -> None:
-        found = matches(self._commands, self.line.text())
-        if not found:
+        matching = matches(self._commands, self.line.text())
+        if not matching:
             return
-        command = found[max(0, self.list.currentRow())]
+        command = matching[max(0, self.list.currentRow())]
         self.accept()
         QTimer.singleShot(0, self.parent() or self, command.run)  # when this dialog is gone
 
@@ -318,7 +318,7 @@ class Actions:
 
     def palette(self, pages: Mapping[str, Page], run: Callable[..., object]) -> list[Command]:
         """Every command of the window and of all pages, for the palette."""
-        found = []
+        entries = []
         for name, action in self.by_name.items():
             key, _, command = name.partition(".")
             place = tr(pages[key].title) if key in pages else action.data() or ""
@@ -326,8 +326,8 @@ class Actions:
             if key in pages and not action.isEnabled() and not action.isCheckable():
                 begin = partial(run, key, command)
             if action.menu() is None and name != "palette":
-                found.append(Command(place, plain(action), shown_keys(action.shortcut()), begin))
-        return found
+                entries.append(Command(place, plain(action), shown_keys(action.shortcut()), begin))
+        return entries
 
     def set_theme(self, theme: Theme) -> None:
         """Draw the icons in the colours of a theme."""

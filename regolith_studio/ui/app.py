@@ -57,13 +57,13 @@ def open_window(
     runner = ThreadRunner(poster.post)
     _compile_in_background(runner)
     session = Session(runner)
-    found = [Path(path) for path in paths]
-    if not found:
+    files = [Path(path) for path in paths]
+    if not files:
         session.open_sample()  # is read while the window is built
     window = MainWindow(session, preferences or Preferences.load(), views or best_kind())
     poster.setParent(window)
-    if found:
-        QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
+    if files:
+        QTimer.singleShot(0, window, lambda: window.commands.open_paths(files, unit))
     _release_memory(window)
     return window
 

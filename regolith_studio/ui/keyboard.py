@@ -101,15 +101,15 @@ def _walks(event: QKeyEvent) -> bool:
 
 
 def _framed(widget: QWidget) -> tuple[QWidget, ...]:
-    found: list[QWidget] = [widget] if isinstance(widget, FRAMED) else []
+    framed: list[QWidget] = [widget] if isinstance(widget, FRAMED) else []
     around = widget.parentWidget()
     for _ in range(AROUND):
         if around is None or around.isWindow():
             break
         if around.property(FOCUSED) is not None:
-            found.append(around)
+            framed.append(around)
         around = around.parentWidget()
-    return tuple(found)
+    return tuple(framed)
 
 
 def _set(widget: QWidget, focused: bool) -> None:

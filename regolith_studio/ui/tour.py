@@ -127,10 +127,10 @@ class Tour(QWidget):
 
     def target(self) -> QWidget | None:
         """What this stop is about, or the nearest part around it that can be seen."""
-        found = self._window.findChild(QWidget, self._steps[self._at].target)
-        while found is not None and not found.isVisible():
-            found = found.parentWidget()
-        return None if found is self._window else found
+        widget = self._window.findChild(QWidget, self._steps[self._at].target)
+        while widget is not None and not widget.isVisible():
+            widget = widget.parentWidget()
+        return None if widget is self._window else widget
 
     def _place(self) -> None:
         self.hide()  # beside views that draw by themselves a frame that only moves leaves its trace behind

@@ -132,14 +132,16 @@ def tr(text: str, **values: object) -> str:
     Numbers are formatted as Python does, with the decimal sign of the language. Values are text: in a text
     with tags they are escaped, unless they are :class:`Markup`, and elsewhere they are :func:`inert`.
     """
-    found = _translation(text)
-    has_tags = "<" in found and _TAG.search(found) is not None
+    translated = _translation(text)
+    has_tags = "<" in translated and _TAG.search(translated) is not None
     if not values:
-        return Markup(found) if has_tags else found
+        return Markup(translated) if has_tags else translated
     if has_tags or any(isinstance(each, Markup) for each in values.values()):
         shown = {name: rich(str(each)) if _is_text(each) else each for name, each in values.items()}
-        return Markup(_FORMATTER.format(found, **shown))
-    return _FORMATTER.format(found, **{n: inert(str(v)) if _is_text(v) else v for n, v in values.items()})
+        return Markup(_FORMATTER.format(translated, **shown))
+    return _FORMATTER.format(
+        translated, **{n: inert(str(v)) if _is_text(v) else v for n, v in values.items()}
+    )
 
 
 def _translation(text: str) -> str:

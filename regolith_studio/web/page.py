@@ -189,10 +189,10 @@ class ThreeViewPage:
         results = self._session.results
         if results.coarsened is None:
             return ""
-        found = polyhedron_verdict(
+        rating = polyhedron_verdict(
             results.coarsened, self._session.choices.weights, results.against_particle, results.fewer_facets
         )
-        return f"Loss {found.loss:.4g}, Jaccard distance {found.jaccard_distance:.3g}. {found.sentence}"
+        return f"Loss {rating.loss:.4g}, Jaccard distance {rating.jaccard_distance:.3g}. {rating.sentence}"
 
 
 def _slider(label: str, name: str, low: int, high: int) -> None:

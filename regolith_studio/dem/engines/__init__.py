@@ -40,14 +40,14 @@ def engine_rows() -> list[dict[str, Any]]:
     """One dictionary per engine: key, label, licence, version or problem, and capabilities."""
     rows = []
     for engine in ENGINES.values():
-        found = engine.find()
+        status = engine.find()
         rows.append(
             {
                 "key": engine.key,
                 "label": engine.label,
                 "licence": engine.licence,
-                "version": found.version,
-                "problem": found.problem,
+                "version": status.version,
+                "problem": status.problem,
                 **asdict(engine.capabilities),
                 "compounds": engine.capabilities.compounds or N_("none: compounds are refused"),
             }

@@ -55,24 +55,24 @@ def platonic_solids() -> dict[str, FloatArray]:
 @timed
 def loose_dice(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
     """Solid fractions of dice that have settled with all of their friction."""
-    found = {}
+    fractions = {}
     for name, vertices in platonic_solids().items():
         run = yield from _settled(engine, vertices)
-        found[name] = _solid_fraction(run)
-    return _line("loose_dice", "Solid fraction of poured Platonic dice, largest deviation", found, LOOSE)
+        fractions[name] = _solid_fraction(run)
+    return _line("loose_dice", "Solid fraction of poured Platonic dice, largest deviation", fractions, LOOSE)
 
 
 @timed
 def tapped_dice(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
     """Solid fractions of dice after they were tapped."""
-    found = {}
+    fractions = {}
     for name, vertices in platonic_solids().items():
         run = yield from _settled(engine, vertices)
         for _ in range(N_TAPS):
             _tap(run)
             yield
-        found[name] = _solid_fraction(run)
-    return _line("tapped_dice", "Solid fraction of tapped Platonic dice, largest deviation", found, CLOSE)
+        fractions[name] = _solid_fraction(run)
+    return _line("tapped_dice", "Solid fraction of tapped Platonic dice, largest deviation", fractions, CLOSE)
 
 
 def dice_case(vertices: FloatArray) -> PreparedCase:
@@ -129,9 +129,9 @@ def _solid_fraction(run: LiftingRun) -> float:
     return float(within_particles(run.prepared, particles, points).mean())
 
 
-def _line(key: str, what: str, found: dict[str, float], measured: dict[str, float]) -> MeasuredLine:
-    worst = max((found[name] - measured[name] for name in measured), key=abs)
-    each = ", ".join(f"{name} {found[name]:.2f} ({value:.2f})" for name, value in measured.items())
+def _line(key: str, what: str, fractions: dict[str, float], measured: dict[str, float]) -> MeasuredLine:
+    worst = max((fractions[name] - measured[name] for name in measured), key=abs)
+    each = ", ".join(f"{name} {fractions[name]:.2f} ({value:.2f})" for name, value in measured.items())
     return MeasuredLine(
         key=key,
         what=what,

@@ -107,8 +107,8 @@ def denoised_volume(
     for done, counts in enumerate(run(smooth, ranges), start=1):
         seen = seen + counts
         yield done, len(ranges)
-    found = source if values is None else replace(source, array=values.array)
-    return found, seen, n_not_finite
+    denoised = source if values is None else replace(source, array=values.array)
+    return denoised, seen, n_not_finite
 
 
 def _smooth_slab(

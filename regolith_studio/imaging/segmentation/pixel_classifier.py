@@ -180,12 +180,12 @@ def painted_voxels(
             f"{painted.name} has {painted.shape} voxels, but {scan.name} has {scan.shape}; "
             "paint on this scan."
         )
-    found: list[tuple[IntArray, IntArray]] = []
+    places: list[tuple[IntArray, IntArray]] = []
     for first, stop in slab_ranges(painted.shape):
         slab = painted.read(first, stop)
         where = np.stack(np.nonzero(slab), axis=-1)
-        found.append((where + np.array([0, 0, first]), slab[tuple(where.T)].astype(np.int64) - 1))
-    positions, labels = (np.concatenate([each[k] for each in found]) for k in (0, 1))
+        places.append((where + np.array([0, 0, first]), slab[tuple(where.T)].astype(np.int64) - 1))
+    positions, labels = (np.concatenate([each[k] for each in places]) for k in (0, 1))
     if len(labels) and not 0 <= labels.min() <= labels.max() < n_classes:
         wrong = labels.max() if labels.max() >= n_classes else labels.min()
         raise InputError(f"{painted.name} holds label {wrong + 1}; classes are 1 to {n_classes}.")
@@ -277,8 +277,8 @@ class PixelClassifier:
     def probabilities(self, vectors: NDArray[np.float32]) -> NDArray[np.float32]:
         """Of each painted class, shape (..., n_classes), for features of shape (..., n_features)."""
         rows = vectors.reshape(-1, vectors.shape[-1])
-        found = self.pipeline.predict_proba(rows).astype(np.float32)
-        return np.asarray(found.reshape(*vectors.shape[:-1], len(self.painted)))
+        shares = self.pipeline.predict_proba(rows).astype(np.float32)
+        return np.asarray(shares.reshape(*vectors.shape[:-1], len(self.painted)))
 
     def grain_probability(self, probabilities: NDArray[np.float32]) -> NDArray[np.float32]:
         """Sum over the classes that are grains, for probabilities of shape (..., n_classes)."""
@@ -351,37 +351,37 @@ def probability_map(
     Raises InputError if the volume has voxels of another size than the classifier was trained at.
     """
     check_voxel_size(classifier.voxel_size, source)
-    found = SharedArray(scratch.zeros(source.shape, np.uint8))
+    shares = SharedArray(scratch.zeros(source.shape, np.uint8))
     ranges = slab_ranges(source.shape, _SLAB_VOXELS)
-    done = _restore_slabs(found, ranges, scratch.checkpoint)
+    done = _restore_slabs(shares, ranges, scratch.checkpoint)
     waiting = [k for k in range(len(ranges)) if k not in done]
-    predict = partial(_predict_slab, classifier, SharedArray(source.array), found)
+    predict = partial(_predict_slab, classifier, SharedArray(source.array), shares)
     for k, _ in zip(waiting, run(predict, [ranges[k] for k in waiting]), strict=True):
         if scratch.checkpoint is not None:
-            scratch.checkpoint.add([CheckpointRecord(k, {}, {_MAP: found.slices(*ranges[k]).tobytes("F")})])
+            scratch.checkpoint.add([CheckpointRecord(k, {}, {_MAP: shares.slices(*ranges[k]).tobytes("F")})])
         done.add(k)
         yield len(done), len(ranges)
-    return probability_volume(found.array, source)
+    return probability_volume(shares.array, source)
 
 
 def _restore_slabs(
-    found: SharedArray, ranges: list[tuple[int, int]], checkpoint: Checkpoint | None
+    shares: SharedArray, ranges: list[tuple[int, int]], checkpoint: Checkpoint | None
 ) -> set[int]:
     """Write the slabs of a checkpoint; returns their numbers."""
     done: set[int] = set()
     for record in checkpoint.records() if checkpoint else ():
         first, stop = ranges[record.index]
         values = np.frombuffer(record.blobs[_MAP], np.uint8)
-        found.write(first, values.reshape((*found.shape[:2], stop - first), order="F"))
+        shares.write(first, values.reshape((*shares.shape[:2], stop - first), order="F"))
         done.add(record.index)
     return done
 
 
 def _predict_slab(
-    classifier: PixelClassifier, given: SharedArray, found: SharedArray, part: tuple[int, int]
+    classifier: PixelClassifier, given: SharedArray, shares: SharedArray, part: tuple[int, int]
 ) -> None:
     slab = given.thick(*part, classifier.features.margin)
-    found.write(slab.first, slab_probability(classifier, slab, given.shape))
+    shares.write(slab.first, slab_probability(classifier, slab, given.shape))
 
 
 def probability_volume(values: NDArray[np.uint8], source: SliceSource) -> Volume:
@@ -402,16 +402,16 @@ def slab_probability(
     nx, ny, _ = shape
     start = slab.first - slab.inner.start
     outer = box_between((0, 0, start), (nx, ny, start + slab.values.shape[2]))
-    found = np.empty((nx, ny, slab.stop - slab.first), dtype=np.uint8)
+    probability = np.empty((nx, ny, slab.stop - slab.first), dtype=np.uint8)
     for x in range(0, nx, _TILE):
         for y in range(0, ny, _TILE):
             high = (min(x + _TILE, nx), min(y + _TILE, ny), slab.stop)
             box = box_between((x, y, slab.first), high)
             vectors = block_features(slab.values, outer, box, shape, classifier.features)
-            found[box[:2]] = _in_bytes(classifier, vectors)
+            probability[box[:2]] = _in_bytes(classifier, vectors)
     if slab.values.dtype.kind == "f":
-        found[~np.isfinite(slab.values[:, :, slab.inner])] = 0
-    return found
+        probability[~np.isfinite(slab.values[:, :, slab.inner])] = 0
+    return probability
 
 
 def box_probability(classifier: PixelClassifier, volume: Volume, box: Box) -> NDArray[np.uint8]:

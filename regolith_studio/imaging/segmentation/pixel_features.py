@@ -98,11 +98,11 @@ def block_features(
         if values.dtype.kind == "f":
             np.nan_to_num(single, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
         highest = 2 if settings.hessian else 1
-        found = _derivatives(single, part, box, shape, sigma, settings.planar, step, highest)
-        smooth.append(found[0, 0, 0])
-        gradients.append(np.sqrt(sum(found[order] ** 2 for order in _FIRST)))
+        derivatives = _derivatives(single, part, box, shape, sigma, settings.planar, step, highest)
+        smooth.append(derivatives[0, 0, 0])
+        gradients.append(np.sqrt(sum(derivatives[order] ** 2 for order in _FIRST)))
         if settings.hessian:
-            curvatures += _planar_eigenvalues(found) if settings.planar else _eigenvalues(found)
+            curvatures += _planar_eigenvalues(derivatives) if settings.planar else _eigenvalues(derivatives)
     differences = [a - b for a, b in pairwise(smooth)]
     return np.stack([smooth[-1], *differences, *gradients, *curvatures], axis=-1).transpose(2, 1, 0, 3)
 
@@ -124,9 +124,9 @@ def features_at(source: SliceSource, positions: IntArray, settings: FeatureSetti
     """
     if len(positions) and not ((positions >= 0) & (positions < source.shape)).all():
         raise InputError(f"Painted voxels lie outside of {source.name} of {source.shape} voxels.")
-    found = np.empty((len(positions), len(settings.names)), dtype=np.float32)
+    features = np.empty((len(positions), len(settings.names)), dtype=np.float32)
     if not len(positions):
-        return found
+        return features
     low, high = int(positions[:, 2].min()), int(positions[:, 2].max()) + 1
     nx, ny, _ = source.shape
     ranges = [(low + first, low + stop) for first, stop in slab_ranges((nx, ny, high - low))]
@@ -138,8 +138,8 @@ def features_at(source: SliceSource, positions: IntArray, settings: FeatureSetti
             here = positions[rows]
             box = box_between(here.min(axis=0).tolist(), (here.max(axis=0) + 1).tolist())
             block = block_features(slab.values, outer, box, source.shape, settings)
-            found[rows] = block[tuple((here - here.min(axis=0)).T)]
-    return found
+            features[rows] = block[tuple((here - here.min(axis=0)).T)]
+    return features
 
 
 def _cells(positions: IntArray, rows: IntArray) -> list[IntArray]:
@@ -176,15 +176,15 @@ def _derivatives(
         ]
         for axis, (n, inner, outer, pace) in enumerate(zip(shape, box, part, step, strict=True))
     ]
-    found: dict[_Orders, FloatBlock] = {(0, 0, 0): values}
+    derivatives: dict[_Orders, FloatBlock] = {(0, 0, 0): values}
     # The axis along which most voxels fall away comes first.
     for axis in np.argsort([len(each[0]) / each[0].shape[1] for each in weights]).tolist():
-        found = {
+        derivatives = {
             _with(orders, axis, order): _along(block, weights[axis][order], axis)
-            for orders, block in found.items()
+            for orders, block in derivatives.items()
             for order in range(highest + 1 - sum(orders))
         }
-    return found
+    return derivatives
 
 
 def _with(orders: _Orders, axis: int, order: int) -> _Orders:
@@ -192,12 +192,12 @@ def _with(orders: _Orders, axis: int, order: int) -> _Orders:
     return x, y, z
 
 
-def _eigenvalues(found: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
+def _eigenvalues(derivatives: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
     """Eigenvalues of the symmetric matrices of second derivatives, the largest first.
 
     Closed form by the angle of the characteristic cubic (Smith, Communications of the ACM 4, 168, 1961).
     """
-    (xx, yy, zz), (xy, xz, yz) = ([found[orders] for orders in each] for each in (_PURE, _MIXED))
+    (xx, yy, zz), (xy, xz, yz) = ([derivatives[orders] for orders in each] for each in (_PURE, _MIXED))
     mean = (xx + yy + zz) / 3.0
     a, b, c = xx - mean, yy - mean, zz - mean
     spread = np.sqrt((a**2 + b**2 + c**2 + 2.0 * (xy**2 + xz**2 + yz**2)) / 6.0)
@@ -209,9 +209,9 @@ def _eigenvalues(found: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
     return [first, 3.0 * mean - first - last, last]
 
 
-def _planar_eigenvalues(found: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
+def _planar_eigenvalues(derivatives: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
     """The same of second derivatives along x and y alone."""
-    (xx, yy, _), (xy, *_) = ([found[orders] for orders in each] for each in (_PURE, _MIXED))
+    (xx, yy, _), (xy, *_) = ([derivatives[orders] for orders in each] for each in (_PURE, _MIXED))
     mean, spread = (xx + yy) / 2.0, np.hypot((xx - yy) / 2.0, xy)
     return [mean + spread, mean - spread]
 

@@ -110,8 +110,8 @@ def _value_outside(slices: NDArray[Any]) -> float | None:
         return None
     known, value = finite(corner), float("nan")
     if 2 * known.size >= corner.size:
-        found, counts = np.unique(known, return_counts=True)
-        value = float(found[counts.argmax()])
+        levels, counts = np.unique(known, return_counts=True)
+        value = float(levels[counts.argmax()])
     if _has(corner, value).mean() < _IN_CORNER or _has(middle, value).mean() > _IN_MIDDLE:
         return None
     return value

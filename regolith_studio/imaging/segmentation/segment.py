@@ -203,23 +203,23 @@ def segmentation_steps(
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch, run))
-    found = yield from _found_bodies(volume, settings, scratch, run, outside)
+    bodies = yield from _found_bodies(volume, settings, scratch, run, outside)
     numbers: NDArray[np.int32] = scratch.zeros(volume.shape, np.int32)
-    sizes, n_parts = yield from _parted(numbers, found, settings, scratch, run)
-    scratch.drop(found.numbers.array)
+    sizes, n_parts = yield from _parted(numbers, bodies, settings, scratch, run)
+    scratch.drop(bodies.numbers.array)
     least = settings.cleaning.min_voxels
     probability = settings.threshold.value if settings.threshold.method == "probability" else None
     if not len(sizes):
-        threshold = threshold_words(found.level, probability)
+        threshold = threshold_words(bodies.level, probability)
         raise InputError(
             f"No grain of {least} voxels or more was found in {source.name} at {threshold}; "
             "is the threshold right, and are grains brighter than what is between them?"
         )
-    small = int((found.bodies.sizes < least).sum()) + n_parts - len(sizes)
-    labels = Volume(numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
-    n_bodies = int((found.bodies.sizes >= least).sum())
+    small = int((bodies.bodies.sizes < least).sum()) + n_parts - len(sizes)
+    labels = Volume(numbers, bodies.edges, "labels", f"{source.name}, labels", source.origin)
+    n_bodies = int((bodies.bodies.sizes >= least).sum())
     result = Segmentation(
-        labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite, probability, outside
+        labels, sizes, bodies.level, bodies.seen, n_bodies, small, bodies.n_not_finite, probability, outside
     )
     _mark_outside(numbers, volume, outside)
     if settings.objects is None and not settings.edits:
@@ -229,7 +229,7 @@ def segmentation_steps(
 
 
 def correction_steps(
-    found: Segmentation,
+    segmentation: Segmentation,
     grey: Volume,
     settings: SegmentationSettings,
     scratch: ScratchArrays | None = None,
@@ -237,16 +237,16 @@ def correction_steps(
 ) -> Steps:
     """A copy of a segmentation with the objects and edits of `settings`, as :func:`segmentation_steps` ends.
 
-    - ``found``: the segmentation without them.
+    - ``segmentation``: the segmentation without them.
     - ``grey``: what it was found in.
-    - ``objects``: the objects of `found`, if they have been described.
+    - ``objects``: the objects of `segmentation`, if they have been described.
 
     Raises InputError if an edit does not find its grains, or no grain is left.
     """
-    numbers: NDArray[np.int32] = (scratch or ScratchArrays()).zeros(found.labels.shape, np.int32)
-    np.copyto(numbers, found.labels.array)
-    sizes = yield from _correct(numbers, grey, settings, found.outside, objects)
-    return replace(found, labels=replace(found.labels, array=numbers), sizes=sizes)
+    numbers: NDArray[np.int32] = (scratch or ScratchArrays()).zeros(segmentation.labels.shape, np.int32)
+    np.copyto(numbers, segmentation.labels.array)
+    sizes = yield from _correct(numbers, grey, settings, segmentation.outside, objects)
+    return replace(segmentation, labels=replace(segmentation.labels, array=numbers), sizes=sizes)
 
 
 def _correct(
@@ -330,21 +330,21 @@ def grains_over_heights(
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     tried = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch))
-    found = yield from _found_bodies(volume, settings, scratch, outside=outside)
+    bodies = yield from _found_bodies(volume, settings, scratch, outside=outside)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     rows = []
     for each in tried:
         numbers[...] = 0
-        sizes, _ = yield from _parted(numbers, found, each, scratch)
+        sizes, _ = yield from _parted(numbers, bodies, each, scratch)
         rows.append(GrainsAtHeight(each.splitting.h_maxima, sizes))
     return tuple(rows)
 
 
-def heights_table(found: Sequence[GrainsAtHeight]) -> Table:
+def heights_table(counts: Sequence[GrainsAtHeight]) -> Table:
     """A row for each h: number of grains, and equivalent diameters in voxels."""
     names = ("h_maxima", "grains", "median_diameter", "largest_diameter")
     rows = []
-    for each in found:
+    for each in counts:
         diameters = np.cbrt(6 * each.sizes / np.pi) if each.n_grains else np.full(1, np.nan)
         rows.append((each.h_maxima, each.n_grains, float(np.median(diameters)), float(diameters.max())))
     units = ("voxels", "", "voxels", "voxels")
@@ -405,13 +405,13 @@ def _predicted(
     """The map of probabilities that a classifier makes of grey values."""
     yield SegmentationProgress(N_("Training the classifier"), 0, 1)
     steps = probability_map(train(training), source, scratch, run)
-    found: Volume = yield from _staged(N_("Predicting grains"), steps)
-    return found
+    probabilities: Volume = yield from _staged(N_("Predicting grains"), steps)
+    return probabilities
 
 
 def _parted(
     labels: NDArray[np.int32],
-    found: _FoundBodies,
+    bodies: _FoundBodies,
     settings: SegmentationSettings,
     scratch: ScratchArrays,
     run: ParallelMap = map,
@@ -419,10 +419,10 @@ def _parted(
     """Write labels of grains into zeros; voxels of each grain, and parts before small ones were dropped."""
     least = settings.cleaning.min_voxels
     splitter = GrainSplitter(
-        found.numbers,
+        bodies.numbers,
         labels,
-        found.bodies,
-        found.edges,
+        bodies.bodies,
+        bodies.edges,
         settings.splitting,
         settings.cleaning.fill_pores,
         settings.tiles,
@@ -537,8 +537,8 @@ def _number_slab(
     if padding is not None:
         mask &= ~padding.of(part)
     core = mask & grain_voxels(slab.values[:, :, slab.inner], level, how) if how.low else None
-    found, components = components_of_slab(mask, slab.first, core)
-    numbers.write(slab.first, -found)
+    slab_components, components = components_of_slab(mask, slab.first, core)
+    numbers.write(slab.first, -slab_components)
     return components
 
 

@@ -379,11 +379,11 @@ class GrainSplitter:
                 fill_pores=self._fill,
                 final=attempt == _ATTEMPTS - 1,
             )
-            for tile, found in zip(trying, in_batches(run, part, trying, _n_looked_at), strict=True):
-                if found is None:
+            for tile, grains in zip(trying, in_batches(run, part, trying, _n_looked_at), strict=True):
+                if grains is None:
                     left.append(tile)
                     continue
-                self._write(found)
+                self._write(grains)
                 done += 1
                 yield done, total
         for tile in cut:
@@ -414,12 +414,12 @@ class GrainSplitter:
             yield
         self._numbers.publish()
 
-    def _write(self, found: TileGrains) -> None:
+    def _write(self, grains: TileGrains) -> None:
         """Label the voxels of a tile's grains that no earlier tile has taken."""
-        count = int(found.grains.max(initial=0))
-        region = self._labels[found.box]
-        free = (found.grains > 0) & (region == 0)
-        taken = found.grains[free].astype(np.int32)
+        count = int(grains.grains.max(initial=0))
+        region = self._labels[grains.box]
+        free = (grains.grains > 0) & (region == 0)
+        taken = grains.grains[free].astype(np.int32)
         region[free] = -(taken + self.n_grains)
         self._sizes.append(np.bincount(taken, minlength=count + 1)[1:])
         self.n_grains += count
@@ -460,5 +460,5 @@ def _touching(grains: IntArray, ends: OpenEnds) -> IntArray:
         for end, marked in zip((0, -1), marks, strict=True)
         if marked
     ]
-    found = np.unique(np.concatenate(faces)) if faces else np.empty(0, dtype=np.int64)
-    return np.asarray(found[found > 0])
+    numbers = np.unique(np.concatenate(faces)) if faces else np.empty(0, dtype=np.int64)
+    return np.asarray(numbers[numbers > 0])

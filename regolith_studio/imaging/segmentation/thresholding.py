@@ -122,12 +122,12 @@ def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any])
         raise InputError(f"The volume has only {filled} grey values, too few for an automatic threshold.")
     centres = seen.centres
     if settings.method == "otsu":
-        found = float(_otsu(hist=(seen.counts, centres)))
+        level = float(_otsu(hist=(seen.counts, centres)))
     else:
-        found = float(
+        level = float(
             _multi_otsu(classes=settings.classes, hist=(seen.counts, centres))[settings.boundary - 1]
         )
-    return float(seen.edges[np.searchsorted(seen.edges, found, side="right")])
+    return float(seen.edges[np.searchsorted(seen.edges, level, side="right")])
 
 
 def hidden_class(

@@ -362,12 +362,12 @@ class ProcessPoolRunner:
             worker.started = True
             return
         try:
-            found = pickle.loads(answer)
-            if isinstance(found, Progress):
+            message = pickle.loads(answer)
+            if isinstance(message, Progress):
                 if worker.handle:
-                    worker.handle.tell(found)
+                    worker.handle.tell(message)
                 return
-            result, memory = found
+            result, memory = message
         except Exception as error:  # noqa: BLE001  whatever an answer's unpickling raises
             result, memory = Failed(f"A worker process could not answer ({error}).", repr(error)), 0
         handle, worker.handle = worker.handle, None

@@ -113,17 +113,17 @@ def _chunks(data: bytes) -> tuple[bytes, bytes]:
         raise FileError(f"is a GLB of version {version}; only version 2 is read.")
     if length > len(data):
         raise FileError(f"is cut short: it declares {length:,} bytes and has {len(data):,}; copy it again.")
-    found: dict[bytes, bytes] = {}
+    chunks: dict[bytes, bytes] = {}
     place = 12
     while place + 8 <= length:
         size, kind = struct.unpack_from("<I4s", data, place)
         if place + 8 + size > len(data):
             raise FileError("is cut short: a chunk of the GLB goes beyond its end.")
-        found.setdefault(kind, data[place + 8 : place + 8 + size])
+        chunks.setdefault(kind, data[place + 8 : place + 8 + size])
         place += 8 + size
-    if b"JSON" not in found:
+    if b"JSON" not in chunks:
         raise FileError("is not a valid GLB: it has no JSON chunk.")
-    return found[b"JSON"], found.get(b"BIN\0", b"")
+    return chunks[b"JSON"], chunks.get(b"BIN\0", b"")
 
 
 def _buffer(row: dict[str, str], binary: bytes, path: Path) -> bytes:
@@ -152,7 +152,7 @@ def _instances(document: _Document) -> list[tuple[dict[str, Any], NDArray[np.flo
         roots = document.row("scenes", document.json.get("scene", 0)).get("nodes", [])
     else:
         roots = list(range(len(document.json.get("nodes", []))))
-    found: list[tuple[dict[str, Any], NDArray[np.float64]]] = []
+    instances: list[tuple[dict[str, Any], NDArray[np.float64]]] = []
     waiting = [(node, np.eye(4), 0) for node in roots]
     visited = 0
     while waiting:
@@ -164,8 +164,10 @@ def _instances(document: _Document) -> list[tuple[dict[str, Any], NDArray[np.flo
         matrix = above @ _matrix(node)
         waiting += [(child, matrix, depth + 1) for child in node.get("children", [])]
         if "mesh" in node:
-            found += [(primitive, matrix) for primitive in document.row("meshes", node["mesh"])["primitives"]]
-    return found
+            instances += [
+                (primitive, matrix) for primitive in document.row("meshes", node["mesh"])["primitives"]
+            ]
+    return instances
 
 
 def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:

@@ -58,9 +58,9 @@ def _lacking(error: KeyError) -> str:
 
 def _no_number(error: Exception) -> str:
     """What stands in the model where a number belongs, if that is the reason."""
-    found = re.search(r"(?:to float|with base 10): '(.*)'$", str(error))
-    if found:
-        return f"its model has “{found[1][:24]}” where a number belongs"
+    match = re.search(r"(?:to float|with base 10): '(.*)'$", str(error))
+    if match:
+        return f"its model has “{match[1][:24]}” where a number belongs"
     return "a number or a matrix in its model is not what it should be"
 
 

@@ -60,7 +60,7 @@ def _stated_unit(data: bytes) -> str | None:
 
 def _sections(lines: list[bytes]) -> dict[str, tuple[str, list[bytes]]]:
     """What stands after each ITEM: the rest of its line, and the lines below."""
-    found: dict[str, tuple[str, list[bytes]]] = {}
+    sections: dict[str, tuple[str, list[bytes]]] = {}
     rows: list[bytes] = []
     for line in lines:
         if line.startswith(_ITEM):
@@ -69,10 +69,10 @@ def _sections(lines: list[bytes]) -> dict[str, tuple[str, list[bytes]]]:
                 (each for each in ("NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS") if text.startswith(each)), text
             )
             rows = []
-            found[name] = (text[len(name) :].strip(), rows)
+            sections[name] = (text[len(name) :].strip(), rows)
         elif line.strip():
             rows.append(line)
-    return found
+    return sections
 
 
 def _count(sections: dict[str, tuple[str, list[bytes]]]) -> int:

@@ -34,13 +34,13 @@ def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
     encoding = head[2].strip().upper()
     if encoding not in (b"ASCII", b"BINARY"):
         raise FileError("is a broken VTK file: its third line is neither ASCII nor BINARY.")
-    found = _POINTS.search(data)
-    if found is None:
+    match = _POINTS.search(data)
+    if match is None:
         raise FileError("holds no points: only VTK files of poly data or unstructured grids are read.")
     binary = encoding == b"BINARY"
-    count = int(found[1])
-    points = _values(data, found.end(), 3 * count, found[2], binary).reshape(-1, 3)
-    return ParsedPositions(points, _diameters(data, found.end(), count, binary))
+    count = int(match[1])
+    points = _values(data, match.end(), 3 * count, match[2], binary).reshape(-1, 3)
+    return ParsedPositions(points, _diameters(data, match.end(), count, binary))
 
 
 def _diameters(data: bytes, after: int, count: int, binary: bool) -> np.ndarray | None:

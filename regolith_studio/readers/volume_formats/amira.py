@@ -103,10 +103,10 @@ class TextStream(InflatedStream):
                 numbers = np.fromstring(text.decode("latin-1"), sep=" ")
         except (ValueError, DeprecationWarning):
             raise FileError("is damaged: its voxels are not numbers.") from None
-        found = numbers.astype(self._stored)
-        if self._stored.kind != "f" and (found != numbers).any():
+        voxels = numbers.astype(self._stored)
+        if self._stored.kind != "f" and (voxels != numbers).any():
             raise FileError(f"is damaged: some of its voxels are no {self._stored.name}.")
-        return found
+        return voxels
 
     def check_end(self) -> None:
         """Do nothing: text has no checksum."""

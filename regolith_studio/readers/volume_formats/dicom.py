@@ -209,9 +209,9 @@ def _value(items: list[Any], tag: str) -> Any:
     """The first value of a tag in the items of a frame, in its functional group or in the file itself."""
     for item in items:
         for place in (*list(item.get(_GROUPS[tag]) or [])[:1], item):
-            found = place.get(tag)
-            if found is not None and found != "":
-                return found
+            element = place.get(tag)
+            if element is not None and element != "":
+                return element
     return None
 
 
@@ -256,15 +256,15 @@ def _pixels(frame: DicomFrame) -> NDArray[Any]:
     """The pixels of a file of one frame, as they lie there."""
     data = _parsed(frame.path, specific_tags=["PixelData"])
     rows, columns, stored = frame.layout
-    found = data.get("PixelData")
+    element = data.get("PixelData")
     needed = rows * columns * np.dtype(stored).itemsize
-    if not isinstance(found, bytes) or not needed <= len(found) <= needed + 1:
-        count = len(found) if isinstance(found, bytes) else 0
+    if not isinstance(element, bytes) or not needed <= len(element) <= needed + 1:
+        count = len(element) if isinstance(element, bytes) else 0
         raise FileError(
             f"is damaged: its slice {display_name(frame.path)} has {count:,} bytes of pixels "
             f"and needs {needed:,}."
         )
-    pixels = np.frombuffer(found, stored, rows * columns).reshape(rows, columns)
+    pixels = np.frombuffer(element, stored, rows * columns).reshape(rows, columns)
     if not frame.unused:
         return pixels
     own = pixels.astype(pixels.dtype.newbyteorder("="))
@@ -281,8 +281,8 @@ def _unpacked(path: Path, frames: list[DicomFrame]) -> Iterator[NDArray[Any]]:
     decoder = "pydicom" if frames[0].packed else ""
     try:
         wanted = [each.frame for each in frames]
-        found = list(pydicom.iter_pixels(path, raw=True, indices=wanted, decoding_plugin=decoder))
-        if len(found) != len(frames) or any(each.shape != (rows, columns) for each in found):
+        unpacked = list(pydicom.iter_pixels(path, raw=True, indices=wanted, decoding_plugin=decoder))
+        if len(unpacked) != len(frames) or any(each.shape != (rows, columns) for each in unpacked):
             raise ValueError("other frames")
     except MemoryError:
         raise
@@ -290,7 +290,7 @@ def _unpacked(path: Path, frames: list[DicomFrame]) -> Iterator[NDArray[Any]]:
         raise FileError(
             f"is damaged: the pixels of {display_name(path)} are not those that its header states."
         ) from None
-    yield from (each.astype(np.dtype(stored).newbyteorder("="), copy=False) for each in found)
+    yield from (each.astype(np.dtype(stored).newbyteorder("="), copy=False) for each in unpacked)
 
 
 SPACING_TOLERANCE = 0.01
@@ -403,10 +403,10 @@ def _header(
     size = sizes_or_none([*slices[0].spacing, step])
     entries = tuple(
         DatasetEntry(
-            uid, (each.layout[1], each.layout[0], len(found)), np.dtype(each.layout[2]).name, _size(found)
+            uid, (each.layout[1], each.layout[0], len(usable)), np.dtype(each.layout[2]).name, _size(usable)
         )
-        for uid, found in series.items()
-        for each in found[:1]
+        for uid, usable in series.items()
+        for each in usable[:1]
     )
     return VoxelHeader(
         three_dimensions((len(slices), rows, columns)),

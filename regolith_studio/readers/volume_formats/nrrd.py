@@ -171,10 +171,10 @@ def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None,
 
 def _in_space_unit(vectors: list[list[float]], names: list[str]) -> tuple[list[list[float]], str | None]:
     """Directions in one unit, from those in the units of the axes of space, and its key."""
-    found = in_one_unit([1.0] * len(names), names)
-    if found is None:
+    in_unit = in_one_unit([1.0] * len(names), names)
+    if in_unit is None:
         return vectors, None
-    factors, key = found
+    factors, key = in_unit
     return [[x * factor for x, factor in zip(vector, factors, strict=False)] for vector in vectors], key
 
 

@@ -161,26 +161,26 @@ def _attributes(path: Path) -> dict[str, Any]:
     """The attributes of a group that describe an image."""
     if (path / "zarr.json").is_file():
         group = _json(path, "zarr.json").get("attributes")
-        found = group.get("ome") if isinstance(group, dict) else None
+        nested = group.get("ome") if isinstance(group, dict) else None
     else:
-        found = _json(path, ".zattrs") if (path / ".zattrs").is_file() else None
-    if isinstance(found, dict) and "bioformats2raw.layout" in found:
+        nested = _json(path, ".zattrs") if (path / ".zattrs").is_file() else None
+    if isinstance(nested, dict) and "bioformats2raw.layout" in nested:
         raise FileError("holds several images; open the folder of one of them, such as the folder 0 in it.")
-    if not isinstance(found, dict):
+    if not isinstance(nested, dict):
         raise FileError(_NO_IMAGE)
-    return found
+    return nested
 
 
 def _json(folder: Path, name: str) -> dict[str, Any]:
     path = _checked(folder, name)
     try:
         data = path.read_bytes() if path.stat().st_size <= MAX_METADATA_BYTES else b""
-        found = json.loads(data)
+        document = json.loads(data)
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict):
+        document = None
+    if not isinstance(document, dict):
         raise FileError(f"is a broken Zarr: its file “{printable(name)[:60]}” holds no metadata.")
-    return found
+    return document
 
 
 def _checked(folder: Path, name: str) -> Path:

@@ -34,13 +34,13 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
     if member_names(path):
         return (path,)
     suffixes = tuple(sorted(volume_suffixes() - set(VOLUME_FORMATS["raw"].suffixes)))
-    found = [file for file in _visible_names(path) if file.lower().endswith(suffixes)]
-    found += [folder for folder in _visible_folders(path) if member_names(path / folder)]
-    if not found:
+    files = [file for file in _visible_names(path) if file.lower().endswith(suffixes)]
+    files += [folder for folder in _visible_folders(path) if member_names(path / folder)]
+    if not files:
         raise FileError(
             f"The folder {display_name(path)} holds no volume; volumes end in {', '.join(suffixes)}."
         )
-    return tuple(path / file for file in sorted(found, key=natural_key))
+    return tuple(path / file for file in sorted(files, key=natural_key))
 
 
 def member_names(path: Path) -> tuple[str, ...]:

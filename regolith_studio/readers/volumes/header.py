@@ -145,14 +145,14 @@ def layout_from_name(path: Path) -> RawLayout | None:
     Raises FileError if there is no such file.
     """
     size = checked_size(path, largest=None)
-    found = _EDGES.search(path.stem)
-    if found is None:
+    match = _EDGES.search(path.stem)
+    if match is None:
         return None
-    shape = (int(found[1]), int(found[3]), int(found[4]))
+    shape = (int(match[1]), int(match[3]), int(match[4]))
     voxels = math.prod(shape)
     if not voxels:
         return None
-    dtype = _type_in(path.stem[: found.start()] + " " + path.stem[found.end() :])
+    dtype = _type_in(path.stem[: match.start()] + " " + path.stem[match.end() :])
     if dtype is None:
         dtype = _BY_SIZE.get(size // voxels)
     if dtype is None:
@@ -165,10 +165,10 @@ def layout_from_name(path: Path) -> RawLayout | None:
 
 def _type_in(text: str) -> str | None:
     """The voxel type that a name holds, as numpy calls it."""
-    found = _TYPE.search(text)
-    if found is None:
+    match = _TYPE.search(text)
+    if match is None:
         return None
-    word = found[0].lower()
+    word = match[0].lower()
     if word.startswith(("uint", "int", "float")):
         return word
     number = re.sub(r"\D", "", word)

@@ -124,12 +124,12 @@ def _ranges(text: str) -> tuple[tuple[_Bound, _Bound], ...]:
     """Both bounds along x, y and z, each a number or None and the key of a unit or nothing for voxels."""
     if not text:
         return ()
-    found = [_RANGE.fullmatch(part) for part in text.split(",")]
-    if len(found) != 3 or not all(found):
+    matches = [_RANGE.fullmatch(part) for part in text.split(",")]
+    if len(matches) != 3 or not all(matches):
         raise InputError(
             f"A crop is X0:X1,Y0:Y1,Z0:Z1 in voxels or lengths, such as 0:256,:,0.1:0.5mm, got {text!r}."
         )
-    return tuple(_bounds(each.groups(), text) for each in found if each is not None)
+    return tuple(_bounds(each.groups(), text) for each in matches if each is not None)
 
 
 def _bounds(groups: tuple[str | None, ...], text: str) -> tuple[_Bound, _Bound]:

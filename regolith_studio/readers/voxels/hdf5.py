@@ -63,9 +63,9 @@ UNSTATED = StatedLayout()
 def stated_layout(file: Any, path: str, dataset: Any) -> StatedLayout:
     """The layout of the array at `path` of an open ``h5py.File``, by the first program that it shows."""
     for reader in _READERS:
-        found = reader(file, path, dataset)
-        if found is not None:
-            return found
+        layout = reader(file, path, dataset)
+        if layout is not None:
+            return layout
     return UNSTATED
 
 
@@ -225,10 +225,12 @@ def find_volumes(file: Any, axes: str = "") -> list[Hdf5Volume]:
 
     Raises FileError if the file holds more objects than any volume file does.
     """
-    found = [
+    entries = [
         candidate for path, dataset in _datasets(file) for candidate in _volumes_of(file, path, dataset, axes)
     ]
-    return sorted(found, key=lambda each: (each.path != _ILASTIK, -prod(each.shape), each.path, each.channel))
+    return sorted(
+        entries, key=lambda each: (each.path != _ILASTIK, -prod(each.shape), each.path, each.channel)
+    )
 
 
 def check_storage(dataset: Any) -> None:
@@ -274,8 +276,8 @@ def _tagged_size(dataset: Any) -> Sizes | None:
         return None
     try:
         edges = {axis["key"]: float(axis["resolution"]) for axis in tags["axes"]}
-        found = in_one_unit([edges[axis] for axis in "xyz"], [str(units[axis]) for axis in "xyz"])
-        return sizes_or_none([edge * FILE_UNITS[found[1]] for edge in found[0]]) if found else None
+        size = in_one_unit([edges[axis] for axis in "xyz"], [str(units[axis]) for axis in "xyz"])
+        return sizes_or_none([edge * FILE_UNITS[size[1]] for edge in size[0]]) if size else None
     except (KeyError, TypeError, ValueError):
         return None
 
@@ -284,7 +286,7 @@ def _datasets(file: Any) -> list[tuple[str, Any]]:
     """Datasets reached by hard links only, each once."""
     import h5py
 
-    found: list[tuple[str, Any]] = []
+    datasets: list[tuple[str, Any]] = []
     waiting: list[tuple[str, Any]] = [("", file)]
     seen: set[Any] = set()
     count = 0
@@ -307,8 +309,8 @@ def _datasets(file: Any) -> list[tuple[str, Any]]:
             if isinstance(each, h5py.Group):
                 waiting.append((inner, each))
             elif isinstance(each, h5py.Dataset):
-                found.append((inner, each))
-    return found
+                datasets.append((inner, each))
+    return datasets
 
 
 def _volumes_of(file: Any, path: str, dataset: Any, stated: str) -> list[Hdf5Volume]:

@@ -172,10 +172,10 @@ def stated_edges(edges: Sequence[float], names: Sequence[str | None]) -> tuple[S
     size = sizes_or_none(list(edges))
     if size is None:
         return None, None
-    found = in_one_unit(size, names)
-    if found is None:
+    in_unit = in_one_unit(size, names)
+    if in_unit is None:
         return size, None
-    return sizes_or_none(list(found[0])), found[1]
+    return sizes_or_none(list(in_unit[0])), in_unit[1]
 
 
 def hand_note(edges: Sequence[float]) -> tuple[str, ...]:

@@ -39,14 +39,14 @@ def open_described(path: Path) -> PlainVoxels:
     Raises FileError if the header breaks the rules, or the voxels are elsewhere or of another number.
     """
     kind = next(suffix for suffix in READERS if path.name.lower().endswith(suffix))
-    found = READERS[kind](path, text_fields(path))
-    size, unit = stated_edges(found.edges, [found.unit] * 3)
-    shape = three_dimensions(found.shape[::-1])
-    header = VoxelHeader(shape, voxel_type(found.stored), size, unit)
+    described = READERS[kind](path, text_fields(path))
+    size, unit = stated_edges(described.edges, [described.unit] * 3)
+    shape = three_dimensions(described.shape[::-1])
+    header = VoxelHeader(shape, voxel_type(described.stored), size, unit)
     try:
-        return exact_voxels(found.source, 0, header, found.stored)
+        return exact_voxels(described.source, 0, header, described.stored)
     except FileError as error:
-        raise FileError(f"describes {display_name(found.source)}, which {error}") from None
+        raise FileError(f"describes {display_name(described.source)}, which {error}") from None
 
 
 def header_beside(path: Path) -> Path | None:

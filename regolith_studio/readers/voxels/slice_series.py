@@ -44,10 +44,10 @@ class SliceSeries:
     @property
     def missing(self) -> tuple[int, ...]:
         """The numbers that no slice has, at most one more than the slices."""
-        found, counted = set(self.numbers), range(self.numbers[0], self.numbers[-1], self.step)
-        most = len(found) + 1
+        present, counted = set(self.numbers), range(self.numbers[0], self.numbers[-1], self.step)
+        most = len(present) + 1
         return tuple(
-            number for number, _ in zip((n for n in counted if n not in found), range(most), strict=False)
+            number for number, _ in zip((n for n in counted if n not in present), range(most), strict=False)
         )
 
     def in_place(self, allow_gaps: bool) -> list[str | None]:
@@ -80,8 +80,8 @@ def slice_series(names: Iterable[str]) -> tuple[list[SliceSeries], list[str]]:
     where only some names have them, and hexadecimal digits where all names of a kind do.
     """
     images = sorted((name for name in names if name.lower().endswith(SLICE_SUFFIXES)), key=natural_key)
-    found = [each for group in _alike(images) for each in group]
-    series = [each for each in found if MIN_SLICES <= len(each.files) <= MAX_SLICES]
+    ordered = [each for group in _alike(images) for each in group]
+    series = [each for each in ordered if MIN_SLICES <= len(each.files) <= MAX_SLICES]
     inside = {file for each in series for file in each.files}
     return sorted(series, key=lambda each: natural_key(each.name)), [
         name for name in images if name not in inside
@@ -205,12 +205,12 @@ def zarr_names(folder: Path) -> tuple[str, ...]:
 
     Raises FileError if there are more than a million.
     """
-    found: list[str] = []
+    folders: list[str] = []
     for place, _, names in os.walk(folder):
-        found += (os.path.relpath(os.path.join(place, name), folder) for name in names)  # noqa: PTH118
-        if len(found) > MAX_FILES:
+        folders += (os.path.relpath(os.path.join(place, name), folder) for name in names)  # noqa: PTH118
+        if len(folders) > MAX_FILES:
             raise FileError(f"holds more than {MAX_FILES:,} files; save it with larger chunks.")
-    return tuple(sorted(found))
+    return tuple(sorted(folders))
 
 
 def is_dicom(path: Path) -> bool:
@@ -233,9 +233,9 @@ def dicom_names(folder: Path) -> tuple[str, ...]:
             for entry in entries
             if not entry.name.startswith(".") and entry.is_file() and _may_be_dicom(entry.name)
         ]
-    found = {name for name in likely if is_dicom(folder / name)}
-    named = {name for name in likely if name.lower().endswith(DICOM_SUFFIXES)} if found else set()
-    return tuple(sorted(found | named))
+    names = {name for name in likely if is_dicom(folder / name)}
+    named = {name for name in likely if name.lower().endswith(DICOM_SUFFIXES)} if names else set()
+    return tuple(sorted(names | named))
 
 
 def _may_be_dicom(name: str) -> bool:

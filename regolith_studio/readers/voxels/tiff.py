@@ -122,15 +122,15 @@ def _imagej(metadata: dict[str, Any], page: Any) -> Stated:
 
 
 def _ome(description: str) -> Stated:
-    found: dict[str, str] = {}
+    fields: dict[str, str] = {}
     for axis, unit, text in _PHYSICAL.findall(description):
-        found.setdefault(axis + unit, text)
-    if "X" not in found:
+        fields.setdefault(axis + unit, text)
+    if "X" not in fields:
         return None, None, ()
-    names = {axis: found.get(f"{axis}Unit", "µm") for axis in "XYZ"}
-    edges = [_number(found.get(axis, found["X"]), 0.0) for axis in "XYZ"]
-    size, unit = stated_edges(edges, [names[axis if axis in found else "X"] for axis in "XYZ"])
-    return size, unit, () if "Z" in found else (_CUBIC,)
+    names = {axis: fields.get(f"{axis}Unit", "µm") for axis in "XYZ"}
+    edges = [_number(fields.get(axis, fields["X"]), 0.0) for axis in "XYZ"]
+    size, unit = stated_edges(edges, [names[axis if axis in fields else "X"] for axis in "XYZ"])
+    return size, unit, () if "Z" in fields else (_CUBIC,)
 
 
 def _resolution(page: Any) -> Stated:

@@ -113,8 +113,8 @@ class SampleInput(_NamedInput):
 
     def particle(self) -> Particle:
         """The particle."""
-        found = next(each for each in sample_particles() if each.name == self.original)
-        return replace(found, name=self.name)
+        shipped = next(each for each in sample_particles() if each.name == self.original)
+        return replace(shipped, name=self.name)
 
 
 @dataclass(frozen=True)

@@ -45,8 +45,8 @@ def draw_polyhedra(draft: ReportDraft, title: str) -> SectionSteps:
     rows = chosen_rows(GALLERY_LOSSES, choices)
     study = yield from study_gallery(draft.drawn, choices.coarsening_request, rows, draft.executor)
     files = STUDIES["solids_study"].write(study, draft.folder / "polyhedra")
-    found = gallery_table(study)
-    failed = [f"{row[1]} ({row[0]}): {row[-1]}" for row in found.rows if row[-1]]
+    table = gallery_table(study)
+    failed = [f"{row[1]} ({row[0]}): {row[-1]}" for row in table.rows if row[-1]]
     first = {
         f"{study.names[0]}: {study.rows[row]}": each.polyhedron.mesh
         for (row, column), each in sorted(study.cells.items(), key=lambda item: item[0])

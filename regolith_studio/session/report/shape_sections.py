@@ -221,9 +221,9 @@ def shown_distances(table: Table) -> Table:
 
 def _nearest(table: Table) -> str:
     """The distances of the aspect ratio by number, in a sentence."""
-    found = [
+    nearest = [
         f"{interval_text(mean, low, high)} % for {model}"
         for model, by, label, mean, low, high, _ in table.rows
         if (by, label) == ("number", CATALOGUE["aspect_ratio"].label)
     ]
-    return f"The distance of the aspect ratio, by number, is {' and '.join(found)}."
+    return f"The distance of the aspect ratio, by number, is {' and '.join(nearest)}."

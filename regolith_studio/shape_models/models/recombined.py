@@ -81,16 +81,16 @@ class SurfaceForms:
     area_factors: FloatArray
 
     @classmethod
-    def of(cls, rows: FloatArray, found: PrincipalAxes) -> "SurfaceForms":
+    def of(cls, rows: FloatArray, principal: PrincipalAxes) -> "SurfaceForms":
         """Of radius functions (n, (l_max + 1)^2) with these principal axes."""
-        lengths = np.exp(found.log_ratios)
+        lengths = np.exp(principal.log_ratios)
         radii = rows @ harmonics(icosphere(COARSE).vertices, round(rows.shape[1] ** 0.5) - 1)
-        points = (radii[:, :, None] * icosphere(COARSE).vertices) @ found.axes
-        features = mesh_features(rows, found.axes)
+        points = (radii[:, :, None] * icosphere(COARSE).vertices) @ principal.axes
+        features = mesh_features(rows, principal.axes)
         return cls(
             (points / lengths[:, None, :]).astype(np.float32),
-            np.swapaxes(found.axes, 1, 2) / lengths[:, :, None],
-            found.axes,
+            np.swapaxes(principal.axes, 1, 2) / lengths[:, :, None],
+            principal.axes,
             _unit_product(np.sqrt(np.ptp(points, axis=1) * lengths)),
             features,
             areas(points) / (1 + np.exp(-features[:, 1])),
@@ -133,14 +133,14 @@ class SurfaceForms:
 def areas(vertices: FloatArray | Floats) -> FloatArray:
     """Areas (n,) of meshes with these vertices (n, v, 3) and the triangles of the icosphere with so many."""
     level = {len(icosphere(each).vertices): each for each in (COARSE, FINE)}[vertices.shape[1]]
-    found = np.empty(len(vertices))
-    _fill_areas(np.ascontiguousarray(vertices, dtype=np.float32), icosphere(level).faces, found)
-    return found
+    surface_areas = np.empty(len(vertices))
+    _fill_areas(np.ascontiguousarray(vertices, dtype=np.float32), icosphere(level).faces, surface_areas)
+    return surface_areas
 
 
 @kernel
-def _fill_areas(vertices: Floats, faces: IntArray, found: FloatArray) -> None:
-    """Fill `found`, shape (n,), with the areas of the triangles `faces` (f, 3) of each row of `vertices`."""
+def _fill_areas(vertices: Floats, faces: IntArray, areas: FloatArray) -> None:
+    """Fill `areas`, shape (n,), with the areas of the triangles `faces` (f, 3) of each row of `vertices`."""
     for n in range(len(vertices)):
         points, total = vertices[n], 0.0
         for f in range(len(faces)):
@@ -149,7 +149,7 @@ def _fill_areas(vertices: Floats, faces: IntArray, found: FloatArray) -> None:
             vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
             x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
             total += np.sqrt(x * x + y * y + z * z)
-        found[n] = 0.5 * total
+        areas[n] = 0.5 * total
 
 
 @kernel
@@ -216,8 +216,8 @@ def _log_aspect_ratios(vertices: FloatArray, axes: FloatArray) -> FloatArray:
     turns = Rotation.from_rotvec(list(product((-BOX_TURN, 0.0, BOX_TURN), repeat=3))).as_matrix()
     frames = np.swapaxes(axes[:, None] @ turns, 2, 3).reshape(len(axes), -1, 3).astype(np.float32)
     edges = np.empty((len(axes), len(turns), 3))
-    for found, mesh, frame in zip(edges, vertices.astype(np.float32), frames, strict=True):
-        found[:] = np.ptp(frame @ mesh.T, axis=1).reshape(-1, 3)
+    for extents, mesh, frame in zip(edges, vertices.astype(np.float32), frames, strict=True):
+        extents[:] = np.ptp(frame @ mesh.T, axis=1).reshape(-1, 3)
     smallest = edges[np.arange(len(edges)), edges.prod(axis=2).argmin(axis=1)]
     return np.asarray(np.log(smallest.max(axis=1) / smallest.min(axis=1)))
 
@@ -329,9 +329,9 @@ class Recombined(SurfaceSampler):
         count = min(self.settings.n_neighbours, n)
         place = np.searchsorted(self.forms.features[order, 2], convexities)
         first = np.clip(place - count // 2, 0, n - count)
-        found = first + rng.integers(count, size=len(targets))
-        itself = order[found] == targets
-        return np.asarray(order[np.where(itself, np.where(found + 1 < n, found + 1, found - 1), found)])
+        donors = first + rng.integers(count, size=len(targets))
+        itself = order[donors] == targets
+        return np.asarray(order[np.where(itself, np.where(donors + 1 < n, donors + 1, donors - 1), donors)])
 
     def roughness_corrected(self) -> "Recombined":
         """The model with the gain by which its particles have the power of the measured ones."""

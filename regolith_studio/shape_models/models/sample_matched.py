@@ -100,10 +100,10 @@ class SampleMatched(SurfaceSampler):
         ratios = self.surfaces.axes.log_ratios[:, [0, 2]]
         spread = np.maximum(ratios.std(axis=0), 1e-9)
         count = min(self.settings.n_neighbours, len(ratios))
-        found = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
+        nearest = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
         own = np.arange(len(ratios))[:, None]
-        mutual = (found[found] == own[:, :, None]).any(axis=2)
-        return np.asarray(np.where(mutual, found, own), dtype=np.int64)
+        mutual = (nearest[nearest] == own[:, :, None]).any(axis=2)
+        return np.asarray(np.where(mutual, nearest, own), dtype=np.int64)
 
     def shapes(
         self, radii: FloatArray, components: IntArray, rng: np.random.Generator

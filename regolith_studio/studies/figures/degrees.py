@@ -100,14 +100,14 @@ def gallery_figure(study: GalleryStudy) -> Figure:
     for column, name in enumerate(study.names):
         solids = [study.cells.get((row, column)) for row in range(n_rows)]
         reaches = [_reach(each.polyhedron) for each in solids if isinstance(each, GalleryPolyhedron)]
-        for row, found in enumerate(solids):
+        for row, solid in enumerate(solids):
             axis = axes[row, column]
             axis.set_xticks([])
             axis.set_yticks([])
             axis.set_frame_on(False)
-            if isinstance(found, GalleryPolyhedron):
-                _draw(axis, found.polyhedron, 1.05 * max(reaches))
-                axis.set_xlabel(f"J {found.jaccard_distance:.3f}", fontsize=7)
+            if isinstance(solid, GalleryPolyhedron):
+                _draw(axis, solid.polyhedron, 1.05 * max(reaches))
+                axis.set_xlabel(f"J {solid.jaccard_distance:.3f}", fontsize=7)
         axes[0, column].set_title(as_written(name), fontsize=8)
     for row, label in enumerate(study.rows):
         axes[row, 0].set_ylabel(

@@ -83,8 +83,8 @@ def quantile_figure(study: PopulationStudy) -> Figure:
             cut = np.percentile(study.cut[:, column], QUANTILES)
             axis.plot(measured, cut, ":", color="black", label=cut_label(study))
         for model, colour in zip(study.models, COLOURS, strict=False):
-            found = np.percentile(model.table[:, column], QUANTILES)
-            axis.plot(measured, found, ".", color=colour, markersize=3, label=MODELS[model.key].label)
+            quantiles = np.percentile(model.table[:, column], QUANTILES)
+            axis.plot(measured, quantiles, ".", color=colour, markersize=3, label=MODELS[model.key].label)
         axis.set_xlabel(f"measured {_label(study, column)}")
     for axis in axes[::N_COLUMNS]:
         axis.set_ylabel("drawn")

@@ -42,26 +42,26 @@ from regolith_studio.studies.repose_calibration import (
 SURFACE_STEM = "response_surface"
 
 
-def write_surface(found: ReposeSurface, folder: Path) -> tuple[Path, ...]:
+def write_surface(surface: ReposeSurface, folder: Path) -> tuple[Path, ...]:
     """Table (CSV, JSON), terms and effects (JSON) and figure (PNG, SVG)."""
     terms = folder / f"{SURFACE_STEM}_terms.json"
-    terms.write_bytes(json_bytes(surface_document(found)))
-    table = write_table(surface_table(found), folder, SURFACE_STEM)
-    return (*table, terms, *write_figure(surface_figure(found), folder, SURFACE_STEM))
+    terms.write_bytes(json_bytes(surface_document(surface)))
+    table = write_table(surface_table(surface), folder, SURFACE_STEM)
+    return (*table, terms, *write_figure(surface_figure(surface), folder, SURFACE_STEM))
 
 
-def surface_figure(found: ReposeSurface) -> Figure:
+def surface_figure(fitted: ReposeSurface) -> Figure:
     """The surface along each statistic, all others at their means, with its interval; the runs as dots."""
-    surface, n = found.surface, len(found.surface.factors)
+    surface, n = fitted.surface, len(fitted.surface.factors)
     figure = Figure(figsize=(3.6 * n + 0.6, 3.4), layout="constrained")
-    statistics = dict(zip(found.study.values, found.statistics, strict=True))
+    statistics = dict(zip(fitted.study.values, fitted.statistics, strict=True))
     for k, axis in enumerate(figure.subplots(1, n, squeeze=False, sharey=True)[0]):
         places = np.tile(surface.centre, (60, 1))
-        places[:, k] = np.linspace(found.statistics[:, k].min(), found.statistics[:, k].max(), 60)
+        places[:, k] = np.linspace(fitted.statistics[:, k].min(), fitted.statistics[:, k].max(), 60)
         mean, half = surface.predict(places)
         axis.plot(places[:, k], mean, color="0.3")
         axis.fill_between(places[:, k], mean - half, mean + half, color="0.3", alpha=0.2)
-        for run in found.study.runs:
+        for run in fitted.study.runs:
             if run.angle is not None:
                 axis.plot(statistics[run.value][k], run.angle, "o", color="#0072b2", markersize=4)
         axis.set_xlabel(with_subscript(CATALOGUE[surface.factors[k]].symbol))
@@ -138,9 +138,9 @@ def _draw_density(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
 def _draw_probabilities(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     """Of each choice, before the first and after each run."""
     parameter = calibration.parameters[k]
-    found = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
+    probabilities = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
     for name in parameter.choices:
-        axis.plot(range(len(found)), [each[name] for each in found], "o-", label=name)
+        axis.plot(range(len(probabilities)), [each[name] for each in probabilities], "o-", label=name)
     axis.set_ylim(0.0, 1.0)
     axis.set_xlabel("runs")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))

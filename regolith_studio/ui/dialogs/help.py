@@ -74,7 +74,7 @@ class GuideBrowser(QTextBrowser):
 def as_markdown(text: str) -> str:
     """A chapter without the directives of Sphinx, its references as links."""
     plain = _DOWNLOAD.sub(r"\1", _DIRECTIVE.sub("", text))
-    return _REFERENCE.sub(lambda found: f"[{found[1] or found[2]}]({found[2]}.md)", plain)
+    return _REFERENCE.sub(lambda match: f"[{match[1] or match[2]}]({match[2]}.md)", plain)
 
 
 def guide_dialog(parent: QWidget, page: str = "") -> QDialog:

@@ -288,12 +288,12 @@ class ThreeViews(QSplitter):
 
     def show_polyhedron(self, results: Results) -> None:
         """Show the newest polyhedron, also while another one is being made: else a drag would show none."""
-        found = results.best
-        if found is None or found.polyhedron is None:
+        best = results.best
+        if best is None or best.polyhedron is None:
             if failure := results.failures.get("coarsening"):
                 self.show_failure(POLYHEDRON, failure)
             return
-        solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
+        solid, centre = best.polyhedron, np.asarray(best.centre, dtype=np.float64)
         shown = self._shapes.get(POLYHEDRON)
         if shown is None or shown.surface is not solid:  # results also change while the polyhedron stays
             self._shapes[POLYHEDRON] = SceneShape(POLYHEDRON, solid, centre)
@@ -508,9 +508,9 @@ class Distances(QObject):
         if self._wanted is None or self._wanted[0] is not fit or self._wanted[1] is not particle:
             self._wanted = fit, particle
             job = Job(measure_distances, (fit, particle))
-            self._follow(job, lambda found: self._take(fit, particle, found), self.refused.emit)
+            self._follow(job, lambda distances: self._take(fit, particle, distances), self.refused.emit)
         return None
 
-    def _take(self, fit: Mesh, particle: Mesh, found: FloatArray) -> None:
-        self._known = fit, particle, found
+    def _take(self, fit: Mesh, particle: Mesh, distances: FloatArray) -> None:
+        self._known = fit, particle, distances
         self.measured.emit()

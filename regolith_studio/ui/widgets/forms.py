@@ -277,8 +277,8 @@ class ParameterForm(SettingsForm):
 
     def changes(self) -> dict[str, float]:
         """Values that are not the defaults, in SI, by name."""
-        found: dict[str, float] = SettingsForm.value(self)
-        return found
+        changed: dict[str, float] = SettingsForm.value(self)
+        return changed
 
     def restore(self, changes: Mapping[str, Any]) -> None:
         """Show the defaults with these changes; unknown names are ignored."""

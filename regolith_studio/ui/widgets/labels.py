@@ -35,8 +35,8 @@ def plain_symbol(text: str) -> str:
 
 def with_subscripts(words: str) -> str:
     """Rich text in which symbols have subscripts; a text without symbols is returned unchanged."""
-    found, count = _SYMBOL.subn(r"\1<sub>\2</sub>", rich(words))
-    return Markup(found) if count else words
+    text, count = _SYMBOL.subn(r"\1<sub>\2</sub>", rich(words))
+    return Markup(text) if count else words
 
 
 def unbroken(rich: str) -> str:

@@ -95,8 +95,8 @@ class ParticleColumn:
 def particle_columns(*keys: str) -> tuple[ParticleColumn, ...]:
     """The columns of these keys, all by default: name, health, group, form, descriptors and weight."""
     descriptors = {row.key: _descriptor_column(row) for row in CATALOGUE.values() if not row.costly}
-    found = {column.key: column for column in (*_text_columns(), *descriptors.values(), _weight_column())}
-    return tuple(found[key] for key in keys or found)
+    columns = {column.key: column for column in (*_text_columns(), *descriptors.values(), _weight_column())}
+    return tuple(columns[key] for key in keys or columns)
 
 
 def _text_columns() -> Iterator[ParticleColumn]:

@@ -237,15 +237,15 @@ def read_bodies(path: Path) -> FloatArray:
 
 def kinetic_energies(log: str) -> dict[int, float]:
     """Kinetic energy of all bodies at each step of a log: rows of step, motion, rotation."""
-    found = {}
+    energies = {}
     for line in log.splitlines():
         words = line.split()
         if len(words) == 3 and words[0].isdigit():
             try:
-                found[int(words[0])] = float(words[1]) + float(words[2])
+                energies[int(words[0])] = float(words[1]) + float(words[2])
             except ValueError:
                 continue  # a sentence that begins with a number
-    return found
+    return energies
 
 
 def early_end(lines: list[str], step_share: float) -> RegolithError:

@@ -82,8 +82,8 @@ def command(folder: Path) -> tuple[list[str], dict[str, str]]:
 
 
 def _program() -> Path | None:
-    found = next((path for name in NAMES if (path := shutil.which(name))), None)
-    return None if found is None else Path(found)
+    program = next((path for name in NAMES if (path := shutil.which(name))), None)
+    return None if program is None else Path(program)
 
 
 @cache
@@ -91,7 +91,7 @@ def _version(program: Path) -> str:
     """From the head of the start script, which names it; starting YADE would take a second."""
     try:
         with program.open(encoding="utf-8", errors="replace") as file:
-            found = VERSION.search(file.read(20_000))
+            match = VERSION.search(file.read(20_000))
     except OSError:
-        found = None
-    return found.group(1) if found else "on the path"
+        match = None
+    return match.group(1) if match else "on the path"

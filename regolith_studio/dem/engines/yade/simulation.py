@@ -155,21 +155,21 @@ def read_yade_state(path: Path, count: int) -> YadeState:
 
     Raises RegolithError if particles were lost on the way.
     """
-    found = json.loads(path.read_text("utf-8"))
-    rows = np.asarray(found["particles"], dtype=np.float64)
+    document = json.loads(path.read_text("utf-8"))
+    rows = np.asarray(document["particles"], dtype=np.float64)
     if rows.shape != (count, 13) or not np.isfinite(rows).all():
         raise RegolithError("YADE lost particles; take a smaller step (step_share).")
     energy = WEIGHT * LENGTH
     return YadeState(
         number=int(path.stem.split(".")[1]),
-        phase=found["phase"],
-        time=found["time"] / TIME,
-        rim=found["rim"] / LENGTH,
-        steps=int(found["steps"]),
-        kinetic=found["kinetic"] / energy,
-        potential=found["potential"] / energy,
-        last=bool(found["last"]),
-        at_rest=bool(found["at_rest"]),
+        phase=document["phase"],
+        time=document["time"] / TIME,
+        rim=document["rim"] / LENGTH,
+        steps=int(document["steps"]),
+        kinetic=document["kinetic"] / energy,
+        potential=document["potential"] / energy,
+        last=bool(document["last"]),
+        at_rest=bool(document["at_rest"]),
         rows=rows,
     )
 

@@ -160,10 +160,10 @@ class BarPlot(Plot):
 
 def _shrunk(names: Sequence[str], font: QFont, room: float, least: float) -> QFont:
     """The largest font in which each name fits, at least `least` points."""
-    found = QFont(font)
-    while _widest(names, found) > room and found.pointSizeF() > least:
-        found.setPointSizeF(max(least, found.pointSizeF() - 0.5))
-    return found
+    smaller = QFont(font)
+    while _widest(names, smaller) > room and smaller.pointSizeF() > least:
+        smaller.setPointSizeF(max(least, smaller.pointSizeF() - 0.5))
+    return smaller
 
 
 def _widest(names: Sequence[str], font: QFont) -> int:
