@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.dataset.build import build_dataset
     from regolith_studio.dataset.folder_io import read_dataset, write_dataset
-    from regolith_studio.dataset.parameters import ContactParameters
+    from regolith_studio.dataset.parameters import ContactParameters, DrumRotation
     from regolith_studio.dem.angle_of_repose import measure_repose
     from regolith_studio.dem.case import ReposeCase
     from regolith_studio.descriptors.describe import describe
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ContactParameters",
+    "DrumRotation",
     "LossWeights",
     "ReposeCase",
     "ReposeRequest",
@@ -76,6 +77,7 @@ __all__ = [
 
 _MODULES = {
     "ContactParameters": "dataset.parameters",
+    "DrumRotation": "dataset.parameters",
     "LossWeights": "coarsening.weights",
     "ReposeCase": "dem.case",
     "ReposeRequest": "jobs.repose_jobs",

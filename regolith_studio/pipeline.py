@@ -188,6 +188,8 @@ def simulate_repose(
 ) -> ReposeRun:
     """Simulate the lifting-cylinder test with a dataset, and measure the angle of repose (section 2.6).
 
+    A case with a ``drum`` turns the cylinder on its side instead and measures its dynamic angle.
+
     Parameters
     ----------
     dataset
@@ -209,6 +211,8 @@ def simulate_repose(
     Examples
     --------
     >>> rs.simulate_repose("grains-20", "heap").measurement.angle
+    >>> case = rs.ReposeCase.in_drum(rs.DrumRotation(rpm=10))
+    >>> rs.simulate_repose("grains-20", "drum", rs.ReposeRequest(case, engine="rapier")).measurement.upper
     """
     with output_lock(Path(folder)):
         steps = repose_steps(Path(dataset), Path(folder), request or ReposeRequest())

@@ -1,7 +1,7 @@
 """``repose``: the angle of repose of simulated or imported particles (sections 2.6 and 3.3)."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,6 +19,7 @@ from regolith_studio.cli.options import (
 from regolith_studio.cli.repose_calibrate import calibrate
 from regolith_studio.cli.repose_options import (
     CaseOptions,
+    DrumOptions,
     EngineKey,
     Particles,
     check_results_folder,
@@ -33,9 +34,12 @@ from regolith_studio.cli.terminal import (
     run_with_progress,
 )
 
+if TYPE_CHECKING:
+    from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun
+
 app = typer.Typer(
     cls=CommandGroup,
-    help="The angle of repose: simulate a lifting cylinder, measure a pile.",
+    help="The angle of repose: simulate a lifting cylinder or a drum, measure a pile.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -86,6 +90,26 @@ Diameter = Annotated[
         metavar="D",
     ),
 ]
+CoarseGraining = Annotated[
+    float,
+    typer.Option(
+        "--coarse-graining",
+        min=0.0,
+        max=1e5,
+        help="Coarse-graining factor on sizes; chosen from the mass if omitted.",
+        metavar="F",
+    ),
+]
+Spheres = Annotated[bool, typer.Option("--spheres", help="Simulate spheres instead of polyhedra.")]
+Filling = Annotated[
+    Path | None,
+    typer.Option(
+        "--filling",
+        help="Folder of a run of the same particles, whose filled cylinder is taken again.",
+        metavar="RUN",
+    ),
+]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an existing run in the folder.")]
 
 
 app.command("calibrate")(calibrate)
@@ -205,38 +229,103 @@ def run(
     output: Folder,
     particles: Particles = 1000,
     how: CaseOptions,
-    coarse_graining: Annotated[
-        float,
-        typer.Option(
-            "--coarse-graining",
-            min=0.0,
-            max=1e5,
-            help="Coarse-graining factor on sizes; chosen from the mass if omitted.",
-            metavar="F",
-        ),
-    ] = 0.0,
-    spheres: Annotated[
-        bool, typer.Option("--spheres", help="Simulate spheres instead of polyhedra.")
-    ] = False,
+    coarse_graining: CoarseGraining = 0.0,
+    spheres: Spheres = False,
     cohesion: Annotated[
         str, typer.Option("--cohesion", help="Cohesion: none, given or scaled.", metavar="C")
     ] = "none",
-    filling: Annotated[
-        Path | None,
-        typer.Option(
-            "--filling",
-            help="Folder of a run of the same particles, whose filled cylinder is lifted again.",
-            metavar="RUN",
-        ),
-    ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an existing run in the folder.")
-    ] = False,
+    filling: Filling = None,
+    overwrite: Overwrite = False,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
+    request = how.request(
+        n_particles=particles,
+        coarse_graining=coarse_graining,
+        shapes="spheres" if spheres else "polyhedra",
+        cohesion=cohesion,
+        seed=seed,
+    )
+    done = _simulate(dataset, output, request, filling, overwrite, jobs)
+    if json:
+        print_json(done.document)
+    else:
+        typer.echo(run_in_words(done.document))
+
+
+@app.command("drum")
+@with_dataclass_options
+def drum(
+    *,
+    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
+    output: Folder,
+    rpm: Annotated[
+        float | None,
+        typer.Option("--rpm", min=1e-3, max=1e5, help="Revolutions in a minute; 10 if omitted.", metavar="N"),
+    ] = None,
+    froude: Annotated[
+        float | None,
+        typer.Option(
+            "--froude",
+            min=1e-9,
+            max=100.0,
+            help="Speed as centripetal over gravitational acceleration at the wall, instead of --rpm.",
+            metavar="F",
+        ),
+    ] = None,
+    turns: Annotated[
+        float,
+        typer.Option(
+            "--turns", min=0.05, max=1000.0, help="Turns that are measured, after a quarter.", metavar="N"
+        ),
+    ] = 1.0,
+    moments: Annotated[
+        int,
+        typer.Option(
+            "--moments", min=20, max=100_000, help="Moments at which the surface is measured.", metavar="N"
+        ),
+    ] = 300,
+    particles: Particles = 1000,
+    how: DrumOptions,
+    coarse_graining: CoarseGraining = 0.0,
+    spheres: Spheres = False,
+    filling: Filling = None,
+    overwrite: Overwrite = False,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Simulate a rotating drum with particles of a dataset; measure dynamic, upper and lower angle."""
+    from dataclasses import replace
+
+    from regolith_studio.dataset.parameters import DrumRotation, rpm_of
+
+    if rpm is not None and froude is not None:
+        raise typer.BadParameter("Give either --rpm or --froude.")
+    request = how.request(
+        {"rpm": 10.0 if rpm is None else rpm, "turns": turns, "moments": moments},
+        n_particles=particles,
+        coarse_graining=coarse_graining,
+        shapes="spheres" if spheres else "polyhedra",
+        seed=seed,
+    )
+    if froude is not None:
+        with usage_errors():
+            turning = DrumRotation(rpm_of(froude, request.case.test), turns, moments)
+        request = replace(request, case=replace(request.case, drum=turning))
+    done = _simulate(dataset, output, request, filling, overwrite, jobs)
+    if json:
+        print_json(done.document)
+    else:
+        typer.echo(run_in_words(done.document))
+
+
+def _simulate(
+    dataset: Path, output: Path, request: "ReposeRequest", filling: Path | None, overwrite: bool, jobs: int
+) -> "ReposeRun":
+    """Run a case, with its remarks before and after."""
     from dataclasses import replace
 
     from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
@@ -245,25 +334,15 @@ def run(
     from regolith_studio.jobs.repose_jobs import simulate_prepared
     from regolith_studio.jobs.runners.process_pool import cores
 
-    request = how.request(
-        n_particles=particles,
-        coarse_graining=coarse_graining,
-        shapes="spheres" if spheres else "polyhedra",
-        cohesion=cohesion,
-        seed=seed,
-    )
     prepared = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
     print_errors(scaling_report(prepared).sentences)
     if filling is not None:
         prepared, notes = with_filling(prepared, filling)
         print_errors(notes)
     request = replace(request, overwrite=overwrite, threads=jobs or cores())
-    done = run_with_progress(simulate_prepared(prepared, output, request))
+    done: ReposeRun = run_with_progress(simulate_prepared(prepared, output, request))
     print_errors(run_remarks(done.document))
-    if json:
-        print_json(done.document)
-    else:
-        typer.echo(run_in_words(done.document))
+    return done
 
 
 @app.command("study")
@@ -433,6 +512,7 @@ def run_remarks(document: dict[str, Any]) -> list[str]:
     return [
         *document["run"]["notes"],
         *document["checks"]["problems"],
+        *(document["measurement"].get("warnings", ()) if "drum" in document["case"] else ()),
     ]
 
 
@@ -453,9 +533,12 @@ def surface_in_words(document: dict[str, Any]) -> str:
 
 def run_in_words(document: dict[str, Any]) -> str:
     """The result of a run."""
+    from regolith_studio.dem.drum_angle import drum_in_words
+
     checks, measurement, heap = document["checks"], document["measurement"], document["packing"]["heap"]
+    words = {"pile": in_words, "drum": drum_in_words}.get(measurement["status"])
     lines = [
-        in_words(measurement) if measurement["status"] == "pile" else measurement["reason"],
+        measurement["reason"] if words is None else words(measurement),
         f"filled to            {100 * checks['fill_height']:.2f} cm, packed {checks['solid_fraction']:.2f}",
         f"particles            {checks['particles_out']} of {checks['particles_in']}",
         f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most, "

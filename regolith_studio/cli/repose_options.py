@@ -57,23 +57,46 @@ class CaseOptions:
     set_: EngineSettings = None
     measure: Measure = None
 
-    def request(self, **case: Any) -> "ReposeRequest":
-        """The request of the options; wrong ones are usage errors. `case`: fields of ``ReposeCase``."""
-        from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+    def request(self, drum: Mapping[str, Any] | None = None, **case: Any) -> "ReposeRequest":
+        """The request of the options; wrong ones are usage errors.
+
+        `drum`: fields of ``DrumRotation``, whose case begins with the drum's own cylinder. `case`: fields of
+        ``ReposeCase``.
+        """
+        from regolith_studio.dataset.parameters import (
+            DRUM,
+            ContactParameters,
+            DrumRotation,
+            LiftingCylinderTest,
+        )
         from regolith_studio.dem.case import ReposeCase
         from regolith_studio.dem.engines import engine_named
         from regolith_studio.jobs.repose_jobs import ReposeRequest
 
         with usage_errors():
             engine = engine_named(self.engine)
-        test = settings_from(LiftingCylinderTest, values(self.test, "value"), "value of the test")
+        test_values = values(self.test, "value")
+        if drum is not None:
+            test_values = dataclasses.asdict(DRUM) | test_values
+        test = settings_from(LiftingCylinderTest, test_values, "value of the test")
         contact = settings_from(ContactParameters, values(self.contact, "value"), "contact parameter")
+        wanted = settings_from(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case")
+        if drum is not None:
+            turning = settings_from(DrumRotation, drum, "value of the drum")
+            wanted = dataclasses.replace(wanted, drum=turning)
         return ReposeRequest(
-            settings_from(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case"),
+            wanted,
             self.engine,
             settings_from(engine.Settings, values(self.set_, "setting"), f"setting of {engine.label}"),
             evaluation_settings(self.measure),
         )
+
+
+@dataclass(frozen=True)
+class DrumOptions(CaseOptions):
+    """The same for a rotating drum, which MuJoCo does not turn."""
+
+    engine: EngineKey = "rapier"
 
 
 def check_results_folder(output: Path, datasets: Sequence[Path]) -> None:

@@ -95,6 +95,47 @@ class LiftingCylinderTest:
 
 
 @dataclass(frozen=True)
+class DrumRotation:
+    """How a drum turns about its horizontal axis.
+
+    Parameters
+    ----------
+    rpm
+        Revolutions in a minute.
+    turns
+        That are measured; a quarter of a turn before them is not.
+    moments
+        At which the surface is measured.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    rpm: float = _number(10.0, N_("Speed of rotation"), "rpm", 1e-3, 1e5)
+    turns: float = _number(1.0, N_("Turns"), "", 0.05, 1000.0)
+    moments: int = _number(300, N_("Measured moments"), "", 20, 100_000)
+
+    def __post_init__(self) -> None:
+        check_limits(self, "value of the drum")
+
+    @property
+    def angular_speed(self) -> float:
+        """In radians a second."""
+        return 2 * 3.141592653589793 * self.rpm / 60
+
+    def froude(self, test: LiftingCylinderTest) -> float:
+        """Centripetal over gravitational acceleration at the wall."""
+        return self.angular_speed**2 * test.diameter / 2 / test.gravity
+
+
+def rpm_of(froude: float, test: LiftingCylinderTest) -> float:
+    """Revolutions in a minute at which a drum has a Froude number."""
+    return float((2 * froude * test.gravity / test.diameter) ** 0.5 * 60 / (2 * 3.141592653589793))
+
+
+@dataclass(frozen=True)
 class ScriptTimes:
     """Waiting times, in seconds, of scripts that cannot detect when the particles are at rest.
 
@@ -143,3 +184,7 @@ def check_limits(settings: Any, what: str) -> None:
                 f"The {what} {each.name} must lie between {factor * limits['minimum']:g} and "
                 f"{factor * limits['maximum']:g}{unit}, got {factor * value:g}."
             )
+
+
+DRUM = LiftingCylinderTest(diameter=0.04, height=0.015, wall_friction=0.8, plate_friction=0.0)
+"""A drum that 15 g fill by two fifths, with end plates without friction: a slice of a long one."""

@@ -9,9 +9,11 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import (
+    DRUM,
     PAPER_COARSE_GRAINING,
     PAPER_FILL_HEIGHT,
     ContactParameters,
+    DrumRotation,
     LiftingCylinderTest,
 )
 from regolith_studio.dataset.sampling import sample_dataset
@@ -25,6 +27,8 @@ from regolith_studio.messages import N_, Message, Number
 MICROMETRE = 1e-6
 MIN_DIAMETERS_ACROSS = 3.0
 """Minimum diameter of the cylinder in mean particle diameters."""
+MIN_DRUM_SHARE, MAX_DRUM_SHARE = 0.1, 0.7
+"""Part of a drum's volume that its filling takes."""
 SOLID_FRACTION = 0.55
 """Estimate for a settled filling, before a run."""
 
@@ -34,12 +38,12 @@ CohesionKind = Literal["none", "given", "scaled"]
 
 @dataclass(frozen=True)
 class ReposeCase:
-    """Parameters of a lifting-cylinder test.
+    """Parameters of a lifting-cylinder test, or of a rotating drum.
 
     Parameters
     ----------
     test, contact
-        Tables 2 and 1.
+        Tables 2 and 1. A drum is `height` deep between its end plates, which have the friction of the plate.
     n_particles
         Simulated particles.
     coarse_graining
@@ -51,6 +55,8 @@ class ReposeCase:
         (relative to the paper's factor 10), which keeps the ratio of cohesion to weight.
     seed
         Of sizes, shapes, positions and orientations.
+    drum
+        How the cylinder turns on its side; without it, it is lifted.
 
     Raises
     ------
@@ -65,6 +71,12 @@ class ReposeCase:
     shapes: ShapeKind = "polyhedra"
     cohesion: CohesionKind = "none"
     seed: int = 0
+    drum: DrumRotation | None = None
+
+    @classmethod
+    def in_drum(cls, drum: DrumRotation, **values: Any) -> "ReposeCase":
+        """A case of a rotating drum; `values` are other fields, `test` being :data:`DRUM` if omitted."""
+        return cls(**{"test": DRUM, "drum": drum, **values})
 
     def __post_init__(self) -> None:
         if not 10 <= self.n_particles <= 5_000_000:
@@ -252,6 +264,12 @@ def _check_room(prepared: PreparedCase) -> None:
             f"{1e3 * prepared.mass:.3g} g fill the cylinder to {1e2 * prepared.fill_height:.3g} cm, but it "
             f"is only {1e2 * test.height:.3g} cm high."
         )
+    share = prepared.fill_height / test.height
+    if prepared.case.drum is not None and not MIN_DRUM_SHARE <= share <= MAX_DRUM_SHARE:
+        raise InputError(
+            f"{1e3 * prepared.mass:.3g} g fill {100 * share:.0f} % of the drum; a surface to measure needs "
+            f"{100 * MIN_DRUM_SHARE:.0f} to {100 * MAX_DRUM_SHARE:.0f} %."
+        )
 
 
 @dataclass(frozen=True)
@@ -340,10 +358,14 @@ def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> lis
     if across < 20:
         narrow = N_("The cylinder is only {across} particles wide; walls and single particles matter.")
         sentences.append(Message(narrow, across=Number(across, ".1f")))
-    if len(prepared) < RELIABLE_N:
+    if len(prepared) < RELIABLE_N and prepared.case.drum is None:
         sentences.append(COARSE_PILE)
     low, high = PAPER_FILL_HEIGHT
-    if not 0.9 * low <= prepared.fill_height <= 1.1 * high:
+    if prepared.case.drum is not None:
+        filled = N_("The filling takes {share} % of the drum; its Froude number is {froude}.")
+        share, froude = prepared.fill_height / test.height, prepared.case.drum.froude(test)
+        sentences.append(Message(filled, share=Number(100 * share, ".0f"), froude=Number(froude, ".2g")))
+    elif not 0.9 * low <= prepared.fill_height <= 1.1 * high:
         filled = N_("The filling will be about {height} cm high (the paper: 2.5 to 3 cm).")
         sentences.append(Message(filled, height=Number(100 * prepared.fill_height, ".2g")))
     real, given, simulated = bonds

@@ -20,7 +20,8 @@ ENGINE_THREADS = "RAYON_NUM_THREADS"
 class EngineCapabilities:
     """How an engine implements the contact model of Table 1, in phrases for the table of engines.
 
-    `compounds` says how it simulates particles of several convex parts; empty if it does not.
+    `compounds` says how it simulates particles of several convex parts, `drum` how it turns a drum; empty if
+    it does not.
     """
 
     shape: str
@@ -31,6 +32,7 @@ class EngineCapabilities:
     coarse_graining: str
     missing: str
     compounds: str = ""
+    drum: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,9 @@ sqrt(d / g). Friction, shape and the ratio of cohesion to weight are free of uni
 """
 
 import json
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -160,6 +159,40 @@ NOT_FILLED = (0.0, 0.0)
 """Height and solid fraction of a filling that has not settled yet."""
 
 
+@dataclass(frozen=True)
+class Course:
+    """What a test does with the cylinder.
+
+    Parameters
+    ----------
+    phases
+        In their order; the first two fill the cylinder.
+    is_done
+        Whether a phase is over; the others end when the particles are at rest.
+    longest
+        Duration of a phase after which it ends in any case.
+    expected
+        Duration of the whole test.
+    interval
+        Between two snapshots.
+    move_walls
+        Sets walls and gravity after the solver has begun a phase.
+    in_plane
+        The particles as they are shown: z up.
+    checks
+        After the last phase.
+    """
+
+    phases: tuple[str, ...]
+    is_done: Mapping[str, Callable[["LiftingRun"], bool]]
+    longest: Callable[["LiftingRun", str], float]
+    expected: Callable[[PreparedCase], float]
+    interval: Callable[["LiftingRun"], float]
+    move_walls: Callable[["LiftingRun"], None]
+    in_plane: Callable[["LiftingRun", ParticleState], ParticleState]
+    checks: Callable[["LiftingRun"], RunChecks]
+
+
 @dataclass(eq=False)
 class LiftingRun:
     """A test on its way, with the records of the run."""
@@ -167,6 +200,7 @@ class LiftingRun:
     prepared: PreparedCase
     settings: LiftingSettings
     solver: Solver
+    course: Course = field(default_factory=lambda: LIFTING)
     units: Units = field(init=False)
     expected: float = field(init=False)
     phase: str = "fill"
@@ -180,7 +214,7 @@ class LiftingRun:
     times: dict[float, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.units, self.expected = Units.of(self.prepared), expected_duration(self.prepared)
+        self.units, self.expected = Units.of(self.prepared), self.course.expected(self.prepared)
 
 
 RECORDS = ("phase", "end", "energy", "energy_gain", "steps", "next_picture", "calm_since", "fill")
@@ -191,6 +225,20 @@ def friction_in(phase: str, prepared: PreparedCase, settings: LiftingSettings) -
     """Friction between particles in a phase."""
     share = settings.fill_friction if phase == "fill" else 1.0
     return share * prepared.case.contact.static_friction
+
+
+MAX_SPEED = 400.0
+"""Limit in sqrt(g d) where none is needed."""
+
+
+def speed_limit(phase: str, prepared: PreparedCase, settings: LiftingSettings) -> float:
+    """Maximum speed of particles in a phase, in sqrt(g d)."""
+    if phase == "fill":
+        return settings.max_fill_speed
+    if phase == "rest" or prepared.case.drum is not None:
+        return MAX_SPEED
+    # small particles that are squeezed out of the foot of the heap would be shot off the plate
+    return float(np.sqrt(2.0 * prepared.fill_height / prepared.mean_diameter))
 
 
 def halved_step(step: float, speeds: FloatArray, max_move: float, smallest_share: float) -> float:
@@ -222,8 +270,10 @@ def wall_ring(
 ) -> list[tuple[tuple[float, float, float], tuple[float, float, float], float]]:
     """Half edges, centre and turn about z of each box of the cylinder, in mean diameters and radians.
 
-    A box is so wide that it overlaps its neighbours: no gap is between them.
+    A box is so wide that it overlaps its neighbours: no gap is between them. In a drum they reach its lid.
     """
+    if prepared.case.drum is not None:
+        height = max(height, prepared.case.test.height / prepared.mean_diameter)
     radius = prepared.case.test.diameter / 2 / prepared.mean_diameter
     half_width = float((radius + thickness) * np.tan(np.pi / N_WALLS))
     distance = radius + thickness / 2
@@ -262,9 +312,9 @@ def fill_cylinder(run: LiftingRun) -> Generator[Snapshot, None, None]:
 
 
 def lift_cylinder(run: LiftingRun) -> Generator[Snapshot, None, SimulationResult]:
-    """Lift the cylinder off a settled filling, and wait until the heap is at rest."""
-    _begin(run, "lift")
-    yield from _phases(run, last=PHASES[-1])
+    """Go on from a settled filling: lift the cylinder off it, and wait until the heap is at rest."""
+    _begin(run, run.course.phases[2])
+    yield from _phases(run, last=run.course.phases[-1])
     return _simulation_result(run)
 
 
@@ -276,55 +326,14 @@ def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, N
     run.times = {float(step): time for step, time in state.records["times"].items()}
     run.solver.phase = run.phase
     run.solver.load(state.solver)
-    yield from _phases(run, last=PHASES[-1], resumed=True)
+    yield from _phases(run, last=run.course.phases[-1], resumed=True)
     return _simulation_result(run)
-
-
-@dataclass(frozen=True)
-class SteppedEngine(ABC):
-    """An engine of which only the solver is its own.
-
-    - ``seconds_per_step``: processor time of a particle and a step at 1,000 particles, by the kind of their
-      shapes.
-    - ``exponent``: by which a step of a particle costs more, of the number of particles over 1,000.
-    - ``further_part``: cost of a further part of a compound, in that of a convex particle.
-    - ``halved_steps``: number of steps over that of steps that are never halved.
-    """
-
-    seconds_per_step: Mapping[str, float]
-    exponent: float
-    further_part: float
-    halved_steps: float = 1.0
-
-    @abstractmethod
-    def solver(self, prepared: PreparedCase, settings: Any) -> Solver:
-        """The solver of a case.
-
-        Raises InputError if the case has what the solver does not represent.
-        """
-
-    def seconds(self, prepared: PreparedCase, settings: Any) -> float:
-        """From the cost of a step and the expected length of the phases."""
-        steps = self.halved_steps * expected_duration(prepared) / settings.time_step
-        parts = 1.0 + self.further_part * prepared.further_parts
-        cost = self.seconds_per_step[prepared.case.shapes] * parts * (len(prepared) / 1000) ** self.exponent
-        return float(1.0 + cost * len(prepared) * steps)
-
-    def simulate(self, prepared: PreparedCase, settings: Any) -> Generator[Snapshot, None, SimulationResult]:
-        """Fill, settle, lift, rest."""
-        return simulate_lifting(LiftingRun(prepared, settings, self.solver(prepared, settings)))
-
-    def resume(
-        self, prepared: PreparedCase, settings: Any, state: EngineState
-    ) -> Generator[Snapshot, None, SimulationResult]:
-        """Go on from a state."""
-        return resume_lifting(LiftingRun(prepared, settings, self.solver(prepared, settings)), state)
 
 
 def _phases(run: LiftingRun, last: str, *, resumed: bool = False) -> Generator[Snapshot, None, None]:
     """From where the run is to the end of the phase `last`."""
     while True:
-        done = {"fill": _is_filled, "lift": _is_clear}.get(run.phase, _is_calm)
+        done = run.course.is_done.get(run.phase, is_calm)
         if not (resumed and run.steps and done(run)):  # a snapshot comes before this question
             yield from advance(run, done)
         resumed = False
@@ -333,25 +342,31 @@ def _phases(run: LiftingRun, last: str, *, resumed: bool = False) -> Generator[S
             yield _snapshot(run)
         if run.phase == last:
             return
-        _begin(run, PHASES[PHASES.index(run.phase) + 1])
+        _begin(run, run.course.phases[run.course.phases.index(run.phase) + 1])
 
 
 def _simulation_result(run: LiftingRun) -> SimulationResult:
     simulated = run.solver.time * run.units.time
     return SimulationResult(
-        particles_of(run), _checks(run), run.steps, simulated, tuple(run.solver.notes(run.times))
+        particles_of(run), run.course.checks(run), run.steps, simulated, tuple(run.solver.notes(run.times))
     )
 
 
 def _begin(run: LiftingRun, phase: str) -> None:
-    top, longest = run.solver.top, run.settings.max_rest_time
-    if phase == "fill":
-        longest = 40.0 + 2.0 * top / run.settings.max_fill_speed
-    elif phase == "lift":
-        longest = 2.0 * top / lift_speed(run.prepared) + 10.0
     run.solver.begin(phase)
-    run.phase, run.end = phase, run.solver.time + longest
+    run.phase, run.end = phase, run.solver.time + run.course.longest(run, phase)
     run.calm_since, run.energy = None, float("inf")
+    run.course.move_walls(run)
+
+
+def longest_phase(run: LiftingRun, phase: str) -> float:
+    """Duration after which a phase ends in any case."""
+    top = run.solver.top
+    if phase == "fill":
+        return 40.0 + 2.0 * top / run.settings.max_fill_speed
+    if phase == "lift":
+        return 2.0 * top / lift_speed(run.prepared) + 10.0
+    return run.settings.max_rest_time
 
 
 def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Snapshot, None, None]:
@@ -367,7 +382,7 @@ def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Sn
             run.energy_gain = max(run.energy_gain, total - run.energy)
             run.energy = total
         if run.solver.time >= run.next_picture:
-            run.next_picture = run.solver.time + run.expected / run.settings.snapshots
+            run.next_picture = max(run.next_picture + run.course.interval(run), run.solver.time)
             yield _snapshot(run)
         if done(run):
             return
@@ -380,12 +395,12 @@ def mean_energies(run: LiftingRun) -> tuple[float, float]:
     return potential / unit, kinetic / unit
 
 
-def _is_filled(run: LiftingRun) -> bool:
+def is_filled(run: LiftingRun) -> bool:
     """Whether no particle falls any more."""
     return mean_energies(run)[1] < FILLED * run.settings.rest_energy
 
 
-def _is_calm(run: LiftingRun) -> bool:
+def is_calm(run: LiftingRun) -> bool:
     """Whether the mean kinetic energy has been small for long enough."""
     if mean_energies(run)[1] > run.settings.rest_energy:
         run.calm_since = None
@@ -418,7 +433,7 @@ def engine_state(run: LiftingRun) -> EngineState:
 def particles_of(run: LiftingRun) -> ParticleState:
     """The particles in SI units."""
     gone = run.phase == "rest"
-    return ParticleState(
+    state = ParticleState(
         points=run.solver.points * run.units.length,
         diameters=run.prepared.diameters,
         orientations=run.solver.orientations,
@@ -427,9 +442,10 @@ def particles_of(run: LiftingRun) -> ParticleState:
         wall=float("inf") if gone else run.solver.rim * run.units.length,
         phase=run.phase,
     )
+    return run.course.in_plane(run, state)
 
 
-def _checks(run: LiftingRun) -> RunChecks:
+def _lifting_checks(run: LiftingRun) -> RunChecks:
     rested = run.calm_since is not None and run.solver.time - run.calm_since >= run.settings.rest_time
     return check_run(
         run.solver.points[:, 2],
@@ -441,3 +457,15 @@ def _checks(run: LiftingRun) -> RunChecks:
         lowest=lowest_corners(run.prepared, particles_of(run)) / run.prepared.mean_diameter,
         problems=run.solver.problems(),
     )
+
+
+LIFTING: Course = Course(
+    phases=PHASES,
+    is_done={"fill": is_filled, "lift": _is_clear},
+    longest=longest_phase,
+    expected=expected_duration,
+    interval=lambda run: run.expected / run.settings.snapshots,
+    move_walls=lambda _run: None,  # the solver lifts the cylinder
+    in_plane=lambda _run, state: state,
+    checks=_lifting_checks,
+)

@@ -15,6 +15,7 @@ import numpy as np
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, missing_in_paper
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.case import PreparedCase, ReposeCase, scaling_report
+from regolith_studio.dem.drum_angle import DrumMeasurement, drum_document
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, packing_document
@@ -30,6 +31,8 @@ from regolith_studio.io.own_files import read_arrays, read_json
 from regolith_studio.messages import Message, from_json, to_json
 from regolith_studio.version import __version__
 
+Measured = ReposeMeasurement | DrumMeasurement | NotAPileError
+"""What a run has found, or why it has found no angle."""
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
 DOCUMENT, FINAL, SHAPES, SNAPSHOTS = "repose.json", "final.npz", "shapes.npz", "snapshots"
@@ -183,7 +186,7 @@ def with_filling(prepared: PreparedCase, folder: Path) -> tuple[PreparedCase, li
     for state in states:
         if state.phase == "settle" and later:
             break
-        later = later or state.phase in ("lift", "rest")
+        later = later or state.phase not in ("fill", "settle")
     else:
         raise FileError(f"{folder.name} holds no settled filling; name the folder of a run that was lifted.")
     earlier = read_run(folder).document
@@ -327,7 +330,7 @@ def run_document(
     *,
     state: str,
     ending: SimulationResult | None = None,
-    measured: ReposeMeasurement | NotAPileError | None = None,
+    measured: Measured | None = None,
     packing: HeapPacking | None = None,
     problem: str | None = None,
     n_snapshots: int = 0,
@@ -382,13 +385,11 @@ def run_document(
     }
 
 
-def _sentences(
-    ending: SimulationResult | None, measured: ReposeMeasurement | NotAPileError | None
-) -> Sequence[str]:
+def _sentences(ending: SimulationResult | None, measured: Measured | None) -> Sequence[str]:
     """The sentences of a document."""
     of_run = ending.checks.problems if ending else ()
     match measured:
-        case ReposeMeasurement():
+        case ReposeMeasurement() | DrumMeasurement():
             return (*of_run, *measured.warnings)
         case NotAPileError():
             return (*of_run, measured.sentence)
@@ -398,7 +399,7 @@ def _sentences(
 
 def case_document(case: ReposeCase) -> dict[str, Any]:
     """The parameters of the case as JSON."""
-    return {
+    document = {
         "test": asdict(case.test),
         "contact": asdict(case.contact),
         "n_particles": case.n_particles,
@@ -407,12 +408,15 @@ def case_document(case: ReposeCase) -> dict[str, Any]:
         "cohesion": case.cohesion,
         "seed": case.seed,
     }
+    return document if case.drum is None else document | {"drum": asdict(case.drum)}
 
 
-def _measurement(measured: ReposeMeasurement | NotAPileError | None) -> dict[str, Any] | None:
+def _measurement(measured: Measured | None) -> dict[str, Any] | None:
     match measured:
         case ReposeMeasurement():
             return measurement_document(measured)
+        case DrumMeasurement():
+            return drum_document(measured)
         case NotAPileError():
             return {"status": measured.status, "angle_deg": None, "reason": str(measured)}
         case _:

@@ -17,6 +17,9 @@ from regolith_studio.messages import N_, Message, Number
 
 PHASES = (N_("fill"), N_("settle"), N_("lift"), N_("rest"))
 """Of the test, in their order."""
+LEVEL, TURN = N_("level"), N_("turn")
+DRUM_PHASES = (*PHASES[:2], LEVEL, TURN)
+"""Of a rotating drum: it is filled standing and laid on its side before it turns."""
 
 
 def progress_message(phase: str, seconds: float) -> Message:

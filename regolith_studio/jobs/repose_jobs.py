@@ -8,6 +8,7 @@ from typing import Any
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, check_number, measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
+from regolith_studio.dem.drum_angle import DrumMeasurement, measure_drum
 from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
@@ -16,13 +17,14 @@ from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing
 from regolith_studio.dem.initial_packing import loose_column, no_particles
 from regolith_studio.dem.run_io import (
+    Measured,
     run_document,
     save_result,
     save_shapes,
     snapshot_files,
     staged_run,
 )
-from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.messages import N_
@@ -66,7 +68,8 @@ class ReposeRequest:
     threads: int = 1
 
     def __post_init__(self) -> None:
-        check_number(self.case.n_particles, self.evaluation)
+        if self.case.drum is None:
+            check_number(self.case.n_particles, self.evaluation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +79,14 @@ class ReposeRun:
     - ``folder``: where it is.
     - ``document``: content of its ``repose.json``.
     - ``ending``: particles and checks.
-    - ``measurement``: the angle, or the reason why there is none.
+    - ``measurement``: the angle, that of a drum as a
+      :class:`~regolith_studio.dem.drum_angle.DrumMeasurement`, or the reason why there is none.
     """
 
     folder: Path
     document: dict[str, Any]
     ending: SimulationResult
-    measurement: ReposeMeasurement | NotAPileError
+    measurement: Measured
 
 
 def repose_steps(dataset_folder: Path, folder: Path, request: ReposeRequest) -> Steps:
@@ -122,6 +126,9 @@ def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
             f"{engine.label} simulates convex particles, and {prepared.dataset_name} holds compounds of "
             f"convex parts; take one of the engines {', '.join(others)}, or coarsen by another method."
         )
+    if prepared.case.drum is not None and not engine.capabilities.drum:
+        others = [each.label for each in ENGINES.values() if each.capabilities.drum]
+        raise InputError(f"{engine.label} turns no drum; take one of the engines {', '.join(others)}.")
 
 
 def _simulate(record: "_RunWriter", folder: Path, request: ReposeRequest) -> Steps:
@@ -162,7 +169,7 @@ class _RunWriter:
         self,
         state: str,
         ending: SimulationResult | None = None,
-        measured: ReposeMeasurement | NotAPileError | None = None,
+        measured: Measured | None = None,
         packing: HeapPacking | None = None,
         problem: str | None = None,
     ) -> dict[str, Any]:
@@ -185,7 +192,12 @@ class _RunWriter:
 def _finish_run(
     record: _RunWriter, ending: SimulationResult, folder: Path, evaluation: EvaluationSettings
 ) -> ReposeRun:
-    measured, packing = measure_result(ending, evaluation), None
+    measured: Measured
+    packing = None
+    if record.prepared.case.drum is None:
+        measured = measure_result(ending, evaluation)
+    else:
+        measured = _measure_moments(record)
     if isinstance(measured, ReposeMeasurement):
         from regolith_studio.studies.figures.repose import write_section_figure  # matplotlib
 
@@ -193,6 +205,14 @@ def _finish_run(
         packing = measure_packing(record.prepared, ending.particles, measured)
     document = record.save("finished", ending, measured, packing)
     return ReposeRun(folder, document, ending, measured)
+
+
+def _measure_moments(record: _RunWriter) -> DrumMeasurement | NotAPileError:
+    """The angles of a drum from the snapshots of the run; a refusal is a result too."""
+    try:
+        return measure_drum(record.prepared, map(read_particle_state, snapshot_files(record.folder)))
+    except NotAPileError as refusal:
+        return refusal
 
 
 def measure_result(

@@ -3132,6 +3132,10 @@
         <translation>Gemessen</translation>
     </message>
     <message>
+        <source>Measured moments</source>
+        <translation>Gemessene Zeitpunkte</translation>
+    </message>
+    <message>
         <source>Measured particles cut at l_max = {degree} are off by {ratio}: {remedy}</source>
         <translation>Gemessene Partikel, bei l_max = {degree} abgeschnitten, weichen um das {ratio}-Fache ab: {remedy}</translation>
     </message>
@@ -4656,6 +4660,10 @@
         <translation>Das Partikel drehen</translation>
     </message>
     <message>
+        <source>Rotating drum</source>
+        <translation>Drehtrommel</translation>
+    </message>
+    <message>
         <source>Rotation [rad]</source>
         <translation>Drehung [rad]</translation>
     </message>
@@ -5272,6 +5280,10 @@
         <translation>Tempo</translation>
     </message>
     <message>
+        <source>Speed of rotation</source>
+        <translation>Drehzahl</translation>
+    </message>
+    <message>
         <source>Sphere</source>
         <translation>Kugel</translation>
     </message>
@@ -5664,6 +5676,14 @@
         <translation>Das Feld wurde gelesen, wie MATLAB es speichert: Zeilen entlang y, Spalten entlang x.</translation>
     </message>
     <message>
+        <source>The bed has no free surface of {count} or more cells of half a diameter.</source>
+        <translation>Das Bett hat keine freie Oberfläche aus mindestens {count} Zellen von je einem halben Durchmesser.</translation>
+    </message>
+    <message>
+        <source>The bed slips on the wall: grains there lag behind it by {slip} % of its speed.</source>
+        <translation>Das Bett rutscht auf der Wand: Körner dort bleiben um {slip} % ihrer Geschwindigkeit zurück.</translation>
+    </message>
+    <message>
         <source>The card {name} cannot be written ({reason}).</source>
         <translation>Die Karte {name} lässt sich nicht schreiben ({reason}).</translation>
     </message>
@@ -5798,6 +5818,10 @@
     <message>
         <source>The files of the {count} open particles, as chosen now</source>
         <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
+    </message>
+    <message>
+        <source>The filling takes {share} % of the drum; its Froude number is {froude}.</source>
+        <translation>Die Füllung nimmt {share} % der Trommel ein; die Froude-Zahl beträgt {froude}.</translation>
     </message>
     <message>
         <source>The filling will be about {height} cm high (the paper: 2.5 to 3 cm).</source>
@@ -6064,6 +6088,18 @@
         <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder abgelehnt.</translation>
     </message>
     <message>
+        <source>The surface flows steadily: {count} avalanches are too few for an upper and a lower angle.</source>
+        <translation>Die Oberfläche fließt stetig: {count} Lawinen sind zu wenige für einen oberen und einen unteren Winkel.</translation>
+    </message>
+    <message>
+        <source>The surface is curved, by {bend} degrees over its middle; the angle is that of the middle.</source>
+        <translation>Die Oberfläche ist gekrümmt, um {bend} Grad über ihre Mitte; der Winkel ist der der Mitte.</translation>
+    </message>
+    <message>
+        <source>The surface was seen at {count} moments; at least {needed} are needed.</source>
+        <translation>Die Oberfläche war zu {count} Zeitpunkten zu sehen; mindestens {needed} sind nötig.</translation>
+    </message>
+    <message>
         <source>The table is on the clipboard.</source>
         <translation>Die Tabelle ist in der Zwischenablage.</translation>
     </message>
@@ -6254,6 +6290,10 @@
     <message>
         <source>Turn on Section in the tool bar.</source>
         <translation>Schalten Sie „Schnitt“ in der Werkzeugleiste ein.</translation>
+    </message>
+    <message>
+        <source>Turns</source>
+        <translation>Umdrehungen</translation>
     </message>
     <message>
         <source>Two parts need {faces} facets; with fewer the result is one convex polyhedron, which misses {missed}.</source>
@@ -6706,6 +6746,10 @@
     <message>
         <source>Zoom</source>
         <translation>Vergrößern und verkleinern</translation>
+    </message>
+    <message>
+        <source>a closed ring of boxes and two end plates that turn</source>
+        <translation>ein geschlossener Ring aus Quadern und zwei Stirnplatten, die sich drehen</translation>
     </message>
     <message>
         <source>a slightly displaced sphere</source>
@@ -7320,6 +7364,10 @@
         <translation>links {angle:.1f}°</translation>
     </message>
     <message>
+        <source>level</source>
+        <translation>hinlegen</translation>
+    </message>
+    <message>
         <source>lift</source>
         <translation>Heben</translation>
     </message>
@@ -7498,6 +7546,10 @@
     <message>
         <source>none: compounds are refused</source>
         <translation>keine: Verbünde werden abgelehnt</translation>
+    </message>
+    <message>
+        <source>none: drums are refused</source>
+        <translation>keine: Trommeln werden abgelehnt</translation>
     </message>
     <message>
         <source>not below {bound:.3g} {unit} (line)</source>
@@ -7954,6 +8006,10 @@
     <message>
         <source>true moments of inertia (fit.csv)</source>
         <translation>wahre Trägheitsmomente (fit.csv)</translation>
+    </message>
+    <message>
+        <source>turn</source>
+        <translation>drehen</translation>
     </message>
     <message>
         <source>unilateral constraint with restitution; penetration is reported, stiffness is not used</source>

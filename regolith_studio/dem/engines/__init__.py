@@ -32,6 +32,7 @@ CAPABILITY_LABELS = {
     "rolling": N_("Rolling"),
     "coarse_graining": N_("Coarse graining"),
     "compounds": N_("Compounds"),
+    "drum": N_("Rotating drum"),
     "missing": N_("Not represented"),
 }
 
@@ -50,6 +51,7 @@ def engine_rows() -> list[dict[str, Any]]:
                 "problem": status.problem,
                 **asdict(engine.capabilities),
                 "compounds": engine.capabilities.compounds or N_("none: compounds are refused"),
+                "drum": engine.capabilities.drum or N_("none: drums are refused"),
             }
         )
     return rows

@@ -267,7 +267,16 @@ class Section:
 
 
 Status = Literal[
-    "pile", "too few particles", "layer", "column stands", "no flanks", "concave", "convex", "scattered"
+    "pile",
+    "too few particles",
+    "layer",
+    "column stands",
+    "no flanks",
+    "concave",
+    "convex",
+    "scattered",
+    "no surface",
+    "too few moments",
 ]
 """Classification of particles at rest."""
 

@@ -17,11 +17,12 @@ from regolith_studio.dem.lifting_cylinder import (
     friction_in,
     halved_step,
     lift_speed,
+    speed_limit,
     steps_note,
     wall_ring,
 )
 from regolith_studio.dem.separation import overlap_depths
-from regolith_studio.dem.snapshot import PHASES, ParticleState
+from regolith_studio.dem.snapshot import DRUM_PHASES, PHASES, ParticleState
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -44,7 +45,6 @@ for a hull for ever."""
 MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
 """Largest way in a step of all but one in a hundred particles, in mean diameters, and smallest share of the
 time step that is set."""
-MAX_SPEED = 400.0
 REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
 
 
@@ -52,7 +52,7 @@ class Box3dSolver:
     """Box3D's world: the particles, the cylinder, the plate."""
 
     def __init__(self, prepared: PreparedCase, settings: Box3dSettings) -> None:
-        self.prepared, self.settings, self.lift_speed = prepared, settings, lift_speed(prepared)
+        self.prepared, self.settings = prepared, settings
         units = Units.of(prepared)
         self.unit_length, self.unit_time = units.length, units.time
         self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
@@ -85,9 +85,15 @@ class Box3dSolver:
             for half, place, turn in wall_ring(prepared, 1.1 * self.top + 2.0, WALL_THICKNESS)
         ]
         half = test.diameter / length * PLATE_WIDTH / 2
-        plate = self._body(lib.b3_staticBody, np.zeros(3), IDENTITY)
-        box = (half, half, WALL_THICKNESS / 2), (0.0, 0.0, -WALL_THICKNESS / 2), IDENTITY
-        self.plate = _add_box(plate, *box, _definition(prepared, test.plate_friction))
+        drum = prepared.case.drum is not None
+        plate = self._body(lib.b3_kinematicBody if drum else lib.b3_staticBody, np.zeros(3), IDENTITY)
+        self.ends = [plate]
+        if drum:
+            self.ends.append(self._body(lib.b3_kinematicBody, np.array([0.0, 0.0, 2.0 * self.top]), IDENTITY))
+        self.plates = []
+        for body, side in zip(self.ends, (-1, 1), strict=False):
+            box = (half, half, WALL_THICKNESS / 2), (0.0, 0.0, side * WALL_THICKNESS / 2), IDENTITY
+            self.plates.append(_add_box(body, *box, _definition(prepared, test.plate_friction)))
 
     def _body(self, kind: int, place: FloatArray, turn: Any) -> Any:
         definition = lib.b3DefaultBodyDef()
@@ -141,15 +147,19 @@ class Box3dSolver:
 
     def begin(self, phase: str) -> None:
         self.phase = phase
-        # small particles that are squeezed out of the foot of the heap would be shot off the plate
-        fall = np.sqrt(2.0 * self.prepared.fill_height / self.unit_length)
-        limit = {"fill": self.settings.max_fill_speed, "rest": MAX_SPEED}.get(phase, float(fall))
+        limit = speed_limit(phase, self.prepared, self.settings)
         lib.b3World_SetMaximumLinearSpeed(self.world, limit)
         self._set_friction()
-        speed = self.lift_speed if phase == "lift" else 0.0
+        speed = lift_speed(self.prepared) if phase == "lift" else 0.0
         lib.b3Body_SetLinearVelocity(self.cylinder, _vector((0.0, 0.0, speed)))
         if phase == "rest":
             self._raise_cylinder(self.rim + 10.0 * self.top)
+
+    def turn_walls(self, angle: float, speed: float) -> None:
+        height = self.prepared.case.test.height / self.unit_length
+        for body, z in zip((self.cylinder, *self.ends), (0.0, 0.0, height), strict=True):
+            lib.b3Body_SetTransform(body, _vector((0.0, 0.0, z)), _quaternion(_about_z(angle)))
+            lib.b3Body_SetAngularVelocity(body, _vector((0.0, 0.0, speed)))
 
     def _raise_cylinder(self, height: float) -> None:
         lib.b3Body_SetTransform(self.cylinder, _vector((0.0, 0.0, height)), _quaternion(IDENTITY))
@@ -165,7 +175,8 @@ class Box3dSolver:
         if friction > 0.0:
             for shape in self.walls:
                 lib.b3Shape_SetFriction(shape, test.wall_friction**2 / friction)
-            lib.b3Shape_SetFriction(self.plate, test.plate_friction**2 / friction)
+            for shape in self.plates:
+                lib.b3Shape_SetFriction(shape, test.plate_friction**2 / friction)
 
     def time_step(self) -> float:
         """The step that is set, halved until what moves does not go too far in it, but for the filling."""
@@ -204,18 +215,23 @@ class Box3dSolver:
 
     def state(self) -> bytes:
         """Places and velocities; the impulses of contacts are computed again when the run goes on."""
-        return np.concatenate(
-            [[self.time, self.rim], self._poses().ravel(), self._velocities().ravel()]
-        ).tobytes()
+        gravity, turn = lib.b3World_GetGravity(self.world), lib.b3Body_GetRotation(self.cylinder)
+        angle, speed = 2 * np.arctan2(turn.v.z, turn.s), lib.b3Body_GetAngularVelocity(self.cylinder).z
+        head = [self.time, self.rim, gravity.x, gravity.y, gravity.z, float(angle), speed]
+        return np.concatenate([head, self._poses().ravel(), self._velocities().ravel()]).tobytes()
 
     def load(self, state: bytes) -> None:
         values = np.frombuffer(state)
-        if len(values) != 2 + 13 * self.n:
+        head, rest = np.split(values, [7])
+        if len(rest) != 13 * self.n:
             raise RegolithError("The state of Box3D to go on from is that of other particles.")
         self.begin(self.phase)
-        self.time = float(values[0])
-        self._raise_cylinder(float(values[1]))
-        self._move(values[2 : 2 + 7 * self.n].reshape(-1, 7), values[2 + 7 * self.n :].reshape(-1, 6))
+        self.time = float(head[0])
+        self._raise_cylinder(float(head[1]))
+        self.set_gravity(head[2:5])
+        if self.phase in DRUM_PHASES[2:]:
+            self.turn_walls(float(head[5]), float(head[6]))
+        self._move(rest[: 7 * self.n].reshape(-1, 7), rest[7 * self.n :].reshape(-1, 6))
 
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)

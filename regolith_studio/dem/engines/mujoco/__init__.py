@@ -7,7 +7,8 @@ from importlib.metadata import PackageNotFoundError, version
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.lifting_cylinder import Solver, SteppedEngine
+from regolith_studio.dem.lifting_cylinder import Solver
+from regolith_studio.dem.stepped_engine import SteppedEngine
 from regolith_studio.messages import N_
 
 REPRESENTS = EngineCapabilities(

@@ -7,7 +7,8 @@ from importlib.metadata import PackageNotFoundError, version
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
-from regolith_studio.dem.lifting_cylinder import Solver, SteppedEngine
+from regolith_studio.dem.lifting_cylinder import Solver
+from regolith_studio.dem.stepped_engine import SteppedEngine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 
@@ -20,6 +21,7 @@ REPRESENTS = EngineCapabilities(
     coarse_graining=N_("by size"),
     missing=N_("Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision"),
     compounds=N_("one body of several convex parts, with mass and inertia of their union"),
+    drum=N_("a closed ring of boxes and two end plates that turn"),
 )
 
 

@@ -17,6 +17,7 @@ from regolith_studio.dem.lifting_cylinder import (
     friction_in,
     halved_step,
     lift_speed,
+    speed_limit,
     steps_note,
     wall_ring,
 )
@@ -47,15 +48,13 @@ CONTACT_FREQUENCY, CONTACT_DAMPING = 20.0, 3.0
 """Natural frequency and damping ratio with which overlaps are pushed apart. With the solver's own (30, 60 for
 what does not move, and 10) heaps at rest tremble and creep: half of their particles move by 0.05 diameters in
 25 sqrt(d/g), and by 0.013 with these; overlaps are no deeper (docs/repose_engines.md)."""
-MAX_SPEED = 400.0
-"""Limit of the solver where none is set."""
 
 
 class RapierSolver:
     """Rapier's world: the particles, then the cylinder, then the plate."""
 
     def __init__(self, prepared: PreparedCase, settings: RapierSettings) -> None:
-        self.prepared, self.settings, self.lift_speed = prepared, settings, lift_speed(prepared)
+        self.prepared, self.settings = prepared, settings
         units = Units.of(prepared)
         self.unit_length, self.unit_time = units.length, units.time
         self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
@@ -68,8 +67,9 @@ class RapierSolver:
     def _find_bodies(self) -> None:
         """Handles of the bodies, and the threads and numerics of the world."""
         bodies = self.world.rigid_bodies
-        handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(self.n + 2)]
-        *self.particles, self.cylinder, self.plate = [bodies[handle] for handle in handles]
+        handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(len(bodies))]
+        found = [bodies[handle] for handle in handles]
+        self.particles, (self.cylinder, self.plate, *self.lids) = found[: self.n], found[self.n :]
         self.world.set_num_threads(int(os.environ.get(ENGINE_THREADS, "1")))
         numerics = self.world.integration_parameters
         # heaps are calmer and overlap less with both; sharp columns walk and fall with recycled contacts
@@ -117,14 +117,19 @@ class RapierSolver:
 
     def begin(self, phase: str) -> None:
         self.phase = phase
-        # small particles that are squeezed out of the foot of the heap would be shot off the plate
-        fall = np.sqrt(2.0 * self.prepared.fill_height / self.unit_length)
-        limit = {"fill": self.settings.max_fill_speed, "rest": MAX_SPEED}.get(phase, float(fall))
+        limit = speed_limit(phase, self.prepared, self.settings)
         self.world.integration_parameters.normalized_max_linear_velocity = limit
         self._set_friction(phase)
-        self.cylinder.linvel = rapier.Vec3(0.0, 0.0, self.lift_speed if phase == "lift" else 0.0)
+        self.cylinder.linvel = rapier.Vec3(0.0, 0.0, lift_speed(self.prepared) if phase == "lift" else 0.0)
         if phase == "rest":
             self.cylinder.translation = rapier.Vec3(0.0, 0.0, self.rim + 10.0 * self.top)
+
+    def turn_walls(self, angle: float, speed: float) -> None:
+        for body in (self.cylinder, self.plate, *self.lids):
+            body.rotation = rapier.Rotation3.from_tuple((0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2)))
+            body.angvel = rapier.Vec3(0.0, 0.0, speed)
+        for lid in self.lids:
+            lid.translation = rapier.Vec3(0.0, 0.0, self.prepared.case.test.height / self.unit_length)
 
     def _set_friction(self, phase: str) -> None:
         """That of particles in this phase; wall and plate are felt as before, as a product with it."""
@@ -133,7 +138,7 @@ class RapierSolver:
             return
         bodies = [
             (self.cylinder, test.wall_friction / friction),
-            (self.plate, test.plate_friction / friction),
+            *[(plate, test.plate_friction / friction) for plate in (self.plate, *self.lids)],
         ]
         for body, value in bodies + [(body, friction) for body in self.particles]:
             for handle in body.colliders:
@@ -213,10 +218,19 @@ def _build(world: rapier.PhysicsWorld, prepared: PreparedCase, cores: tuple[Part
     walls = _walls(prepared, 1.1 * top + 2.0)
     world.add_body(rapier.RigidBody.kinematic_velocity_based(), colliders=walls)
     half = prepared.case.test.diameter / length * PLATE_WIDTH / 2
-    plate = rapier.Collider.cuboid(half, half, half).translation((0.0, 0.0, -half))
-    plate = _with_friction(plate, prepared, prepared.case.test.plate_friction, of_particles=False)
-    world.add_body(rapier.RigidBody.fixed(), colliders=[plate])
+    if prepared.case.drum is None:
+        world.add_body(rapier.RigidBody.fixed(), colliders=[_plate(prepared, half, -half)])
+    else:
+        end, lid = rapier.RigidBody.kinematic_velocity_based(), rapier.RigidBody.kinematic_velocity_based()
+        world.add_body(end, colliders=[_plate(prepared, half, -half)])
+        world.add_body(lid.translation((0.0, 0.0, 2.0 * top)), colliders=[_plate(prepared, half, half)])
     return top
+
+
+def _plate(prepared: PreparedCase, half: float, height: float) -> rapier.ColliderBuilder:
+    """A cube with the friction of the plate about a height."""
+    plate = rapier.Collider.cuboid(half, half, half).translation((0.0, 0.0, height))
+    return _with_friction(plate, prepared, prepared.case.test.plate_friction, of_particles=False)
 
 
 def _form(
