@@ -1,7 +1,6 @@
 """LAMMPS: clumps against exact volume and inertia, its input, and a whole run where the program is."""
 
 import re
-from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import CohesionKind, ReposeCase, ShapeKind, prepare
-from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines.lammps import ENGINE, simulation
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.lammps.script import (
@@ -24,22 +22,9 @@ from regolith_studio.dem.engines.lammps.script import (
     viscosity,
 )
 from regolith_studio.dem.engines.lammps.simulation import early_end, kinetic_energies, read_bodies
-from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-
-
-def result_of(
-    steps: Generator[Snapshot, None, SimulationResult],
-) -> tuple[list[Snapshot], SimulationResult]:
-    """Snapshots and result of a whole run."""
-    moments = []
-    while True:
-        try:
-            moments.append(next(steps))
-        except StopIteration as end:
-            return moments, end.value
-
+from tests.steps import played
 
 SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=40, seed=2)
 
@@ -191,7 +176,7 @@ def test_that_a_run_goes_on_from_its_last_snapshot_where_particles_fly_apart(
         return read(path)
 
     monkeypatch.setattr(simulation, "read_bodies", read_or_lose)
-    moments, ending = result_of(ENGINE.simulate(prepare(boxes, SMALL), settings))
+    moments, ending = played(ENGINE.simulate(prepare(boxes, SMALL), settings))
     times = [moment.particles.time for moment in moments]
     assert np.diff(times) == pytest.approx(np.full(len(times) - 1, times[1]), rel=1e-2)
     assert f"went on from its snapshots at {times[lost_at - 1]:.2f} s" in ending.notes[-1]
@@ -210,7 +195,7 @@ def test_that_particles_faster_than_a_fall_end_a_run_without_restarts(
 ) -> None:
     monkeypatch.setattr(simulation, "MAX_SPEED", 0.3)
     with pytest.raises(RegolithError, match=r"flew apart.*faster than any fall"):
-        result_of(ENGINE.simulate(prepare(boxes, SMALL), LammpsSettings(spheres=4, restarts=0)))
+        played(ENGINE.simulate(prepare(boxes, SMALL), LammpsSettings(spheres=4, restarts=0)))
 
 
 @pytest.mark.slow
@@ -222,7 +207,7 @@ def test_that_lammps_fills_lifts_and_comes_to_rest(
     boxes: Dataset, cohesion: CohesionKind, shapes: ShapeKind
 ) -> None:
     prepared = prepare(boxes, replace(SMALL, cohesion=cohesion, shapes=shapes))
-    moments, ending = result_of(ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30)))
+    moments, ending = played(ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30)))
     assert ending.checks.particles_out == 40
     assert ending.checks.max_overlap < 0.05
     assert ending.checks.energy_gain < 0.05
@@ -246,7 +231,7 @@ def test_that_balls_which_roll_away_for_ever_do_not_end_a_run_and_count_as_no_pa
     checks = simulation._checks
     monkeypatch.setattr(simulation, "_checks", lambda run: seen.append(run) or checks(run))
     prepared = prepare(boxes, replace(SMALL, shapes="spheres"))
-    _, ending = result_of(ENGINE.simulate(prepared, LammpsSettings(rest=50.0, snapshots=30)))
+    _, ending = played(ENGINE.simulate(prepared, LammpsSettings(rest=50.0, snapshots=30)))
     away = np.hypot(*ending.particles.points[:, :2].T)
     assert away.max() > 12.0 * prepared.case.test.diameter / 2
     assert ending.checks.particles_out == 40

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,23 +18,15 @@ from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, coarsen_sample
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started
 from regolith_studio.jobs.particle_jobs import load_particles, measure_particle, measure_particles
 from regolith_studio.readers.particles import unique_names
+from tests.steps import played
 
 SPHERE = icosphere(3)
 GRAIN = Mesh(SPHERE.vertices * [30.0, 20.0, 15.0], SPHERE.faces)
 FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
 ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", target="fit", l_max=4, level=2)
-
-
-def played(steps: Steps) -> tuple[list[Step], Any]:
-    received = []
-    while True:
-        try:
-            received.append(next(steps))
-        except StopIteration as end:
-            return received, end.value
 
 
 def test_that_a_story_begins_with_its_title_and_counts_to_its_end(tmp_path: Path) -> None:

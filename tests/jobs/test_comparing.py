@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.model_evaluation import compare_distributions
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
@@ -18,18 +19,10 @@ def spheres(radii):
     return rows
 
 
-def outcome(steps):
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
 @pytest.mark.slow
 def test_that_spheres_have_their_radii_by_number_and_by_volume():
     assert ShCoefficients(spheres(RADII)[1]).mean_radius == pytest.approx(2.0)
-    compared = outcome(
+    compared = result_of(
         compare_distributions(Sample(spheres(RADII)), Realizations(spheres(RADII[:2]), "radius", "x", 0))
     )
     measured, drawn = compared.distributions("equivalent_radius")
@@ -43,7 +36,7 @@ def test_that_spheres_have_their_radii_by_number_and_by_volume():
 
 @pytest.mark.slow
 def test_that_a_model_without_particles_has_drawn_ones_only():
-    compared = outcome(compare_distributions(None, Realizations(spheres(RADII), "radius", "x", 0)))
+    compared = result_of(compare_distributions(None, Realizations(spheres(RADII), "radius", "x", 0)))
     measured, drawn = compared.distributions("aspect_ratio")
     assert measured is None
     assert len(drawn.values) == 4

@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import DenoiseSettings, ExtractionSettings, ThresholdSettings
 from regolith_studio.jobs import scan_jobs
-from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, extract_measured, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
@@ -21,6 +20,7 @@ from regolith_studio.jobs.scan_jobs import preview_heights, preview_part, scan_o
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.resources import resource
 from tests.jobs.small_jobs import name_and_numbers
+from tests.steps import played
 
 GREY = resource("samples", "ct", "synthetic-grey.tif")
 PART = (slice(0, 80), slice(0, 80), slice(0, 80))
@@ -29,15 +29,6 @@ QUICK = GrainSettings(SegmentationSettings(DenoiseSettings("none")))
 
 def pair_of(extracted: ExtractedParticle, measured: MeasuredParticle) -> object:
     return extracted, measured
-
-
-def played(steps: Steps) -> tuple[list[Step], Any]:
-    received = []
-    while True:
-        try:
-            received.append(next(steps))
-        except StopIteration as end:
-            return received, end.value
 
 
 def test_that_the_heights_of_a_part_give_the_grains_of_its_preview() -> None:

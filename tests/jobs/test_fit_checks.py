@@ -1,23 +1,14 @@
 """A fit whose descriptors are far from those of its particle says so, and which degree would be near."""
 
 import re
-from typing import Any
 
 import numpy as np
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.particle_jobs import TOLERANCE, FitRequest, check_fits, fit_sample
-
-
-def result_of(steps: Steps) -> Any:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
 
 
 def bumpy(amplitude: float, degree: int) -> Mesh:

@@ -1,7 +1,5 @@
 """The polyhedra of Fig. 7: every row for every particle, failures included."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.events import Partial, Progress, Steps
+from regolith_studio.jobs.events import Partial, Progress, result_of
 from regolith_studio.jobs.study_jobs import coarsen_gallery, study_gallery, study_of_cells
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import COMPOUND, chosen_rows
@@ -56,14 +54,6 @@ def test_that_a_particle_that_cannot_be_coarsened_does_not_stop_the_rest(
     by_name = {name: [cell for cell in cells if cell.outcome.name == name] for name in ("flat", "ball")}
     assert all(each.outcome.coarsened is None and each.outcome.problem for each in by_name["flat"])
     assert all(each.outcome.coarsened is not None for each in by_name["ball"])
-
-
-def result_of(steps: Steps) -> Any:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
 
 
 @pytest.mark.parametrize("workers", [1, 2])

@@ -1,7 +1,6 @@
 """Representatives of samples that hold particles which cannot be described or coarsened."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,18 +21,10 @@ from regolith_studio.jobs.representatives_jobs import (
     measure_population,
     survey_representatives,
 )
+from tests.steps import played
 
 ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", target="particle")
 FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
-
-
-def played(steps: Steps) -> tuple[list[Any], Any]:
-    received = []
-    while True:
-        try:
-            received.append(next(steps))
-        except StopIteration as end:
-            return received, end.value
 
 
 def sample(count: int = 8) -> list[Particle]:

@@ -23,6 +23,7 @@ from regolith_studio.io.file_names import file_stem
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import read_csv
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_sample
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import measure_particle
 from regolith_studio.readers.particles import read_mesh, read_particles
@@ -41,14 +42,6 @@ GRAIN = Mesh(BALL.vertices * [30.0, 20.0, 15.0], BALL.faces)
 PACKAGE = Path(__file__).resolve().parents[2] / "regolith_studio"
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
 NAMES = ("../../escaped", "{outside}/absolute", "CON", "", "a\\..\\b", "A", "b", "x" * 300, "=1+1", "n\nl")
-
-
-def ended(steps: Any) -> Any:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
 
 
 @pytest.fixture
@@ -82,7 +75,7 @@ def test_that_a_recipe_writes_its_particles_below_its_output_whatever_they_are_c
     particles = [{"name": f"grain-{k}", "called": name} for k, name in enumerate(called)]
     inputs = [str(output.parents[2] / "inputs")]
     recipe = recipe_of(**BASE, inputs=inputs, particles=particles, outputs={"fits": True})
-    run = ended(run_recipe(recipe, output.parent, output))
+    run = result_of(run_recipe(recipe, output.parent, output))
     assert not run.problems
     assert len(list((output / "meshes").glob("*.stl"))) == len(NAMES)
     with (output / "descriptors.csv").open(newline="") as table:
@@ -98,7 +91,7 @@ def test_that_a_population_is_written_below_the_output_whatever_it_is_called(out
     population = {"sources": ["lunar_soil"], "n": 2, "name": name.format(outside=output.parent)}
     outputs = {"descriptors": False, "dataset": False, "summary": False}
     recipe = recipe_of(**BASE, inputs=[], population=population, outputs=outputs)
-    ended(run_recipe(recipe, output.parent, output))
+    result_of(run_recipe(recipe, output.parent, output))
     assert len(list((output / "meshes").glob("*.stl"))) == 2
 
 
@@ -109,7 +102,7 @@ def test_that_the_writers_of_meshes_stay_in_their_folder(output: Path) -> None:
         grain = ExtractedParticle(particle, 1, 100, 1.0)
         write_particle(folder, grain, measure_particle(particle))
         request = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", n_facets=12)
-        write_coarsening(folder / "coarse", request, ended(coarsen_sample([particle], request)))
+        write_coarsening(folder / "coarse", request, result_of(coarsen_sample([particle], request)))
         fits = FittedSample.of([particle], [fit_harmonics(GRAIN, l_max=4)])
         write_fits(folder / "fit.json", fits, folder / "surfaces", level=2)
         assert len(list(folder.rglob("*.stl"))) == 3
@@ -135,7 +128,7 @@ def test_that_the_names_of_scans_make_folders_in_the_output_only() -> None:
 def test_that_a_group_of_grains_is_a_folder_in_the_output_or_refused(output: Path) -> None:
     output.mkdir()
     given = VolumeInput(resource("samples", "ct", "synthetic-labels.tif"), group="../../escaped")
-    groups = ended(extract_groups([(given, GrainSettings())], output))
+    groups = result_of(extract_groups([(given, GrainSettings())], output))
     assert not groups.extracted
     assert "would not be in the folder" in groups.problems[0][1]
 
@@ -180,4 +173,4 @@ def test_that_a_mesh_keeps_the_name_of_its_file(tmp_path: Path) -> None:
 def test_that_an_input_whose_name_no_file_can_have_is_one_sentence(output: Path) -> None:
     recipe = recipe_of(**BASE, inputs=["a\0b.stl"], outputs={"dataset": False})
     with pytest.raises(FileError, match="cannot be the name of a file"):
-        ended(run_recipe(recipe, output.parent, output))
+        result_of(run_recipe(recipe, output.parent, output))

@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.events import Progress, Started
+from regolith_studio.jobs.events import Progress, Started, result_of
 from regolith_studio.jobs.extraction_jobs import extract_file
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.readers.particles import read_mesh
@@ -28,16 +28,8 @@ BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets":
 GREY = str(resource("samples", "ct", "synthetic-grey.tif"))
 
 
-def ended(steps: Any) -> Any:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
 def run(folder: Path, resume: bool = False, workers: int = 1, **entries: Any) -> Any:
-    return ended(run_recipe(recipe_of(**{**BASE, **entries}), folder.parent, folder, workers, resume))
+    return result_of(run_recipe(recipe_of(**{**BASE, **entries}), folder.parent, folder, workers, resume))
 
 
 def results(folder: Path) -> dict[str, bytes]:
@@ -92,7 +84,7 @@ def scan(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def extracted(scan: dict[str, Any]) -> Any:
     given = VolumeInput(Path(scan["file"]), scan["voxel_size"], scan["unit"])
-    return ended(extract_file(given, GrainSettings())).extraction.particles
+    return result_of(extract_file(given, GrainSettings())).extraction.particles
 
 
 def test_that_the_grains_of_a_volume_are_those_that_extract_finds(

@@ -9,7 +9,6 @@ import subprocess
 from collections.abc import Callable, Mapping
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.jobs.events import Progress, Steps
+from regolith_studio.jobs.events import Progress, Steps, result_of
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
@@ -92,14 +91,6 @@ class Tags(HTMLParser):
             self._in_heading = False
 
 
-def finish(steps: Steps) -> Any:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
 def hashes(folder: Path) -> dict[str, str]:
     files = (path for path in folder.rglob("*") if path.is_file())
     return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
@@ -120,7 +111,7 @@ def particles() -> tuple[Particle, ...]:
 @pytest.fixture
 def small(particles: tuple[Particle, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> WrittenReport:
     monkeypatch.setattr(write, "PARTS", SMALL)
-    return finish(write_report(particles, tmp_path / "report"))
+    return result_of(write_report(particles, tmp_path / "report"))
 
 
 def test_that_a_section_that_fails_says_so_in_its_place_and_stops_nothing(small: WrittenReport) -> None:
@@ -181,7 +172,7 @@ def test_that_the_same_sample_and_settings_give_the_same_bytes(
     small: WrittenReport, particles: tuple[Particle, ...], tmp_path: Path
 ) -> None:
     (tmp_path / "again").mkdir()
-    again = finish(write_report(particles, tmp_path / "again" / "report"))
+    again = result_of(write_report(particles, tmp_path / "again" / "report"))
     assert hashes(again.folder) == hashes(small.folder)
 
 
@@ -291,7 +282,7 @@ def test_that_defaults_and_upper_limits_are_those_of_the_window() -> None:
 
 def test_that_a_sample_without_particles_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="at least one particle"):
-        finish(write_report((), tmp_path / "report"))
+        result_of(write_report((), tmp_path / "report"))
     assert not (tmp_path / "report").exists()
 
 
@@ -304,7 +295,7 @@ def test_that_tables_1_and_2_are_there_where_the_cylinder_is_too_narrow_for_the_
     monkeypatch.setattr(heap_sections, "prepare", narrow)
     draft = ReportDraft(particles, ReportSettings(), tmp_path, Executor())
     draft.dataset = ("three", "shapes", "here")  # of which only the number is asked
-    section = finish(heap_sections.show_parameters(draft, "Tables"))
+    section = result_of(heap_sections.show_parameters(draft, "Tables"))
     assert section.paragraphs[-1] == "The cylinder is too narrow."
     first, second = (dict(zip(t.column("parameter"), t.column("used"), strict=True)) for t in section.tables)
     assert first["Particle density"] == "3.075"
@@ -319,14 +310,14 @@ def test_that_the_sample_of_a_recipe_is_read_where_it_lies(
     for particle in particles[:2]:
         (tmp_path / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh.triangles, "test"))
     recipe = recipe_of(inputs=["angular-1.stl", "bead-1.stl", "missing.stl"])
-    loaded = finish(load_recipe_particles(recipe, tmp_path))
+    loaded = result_of(load_recipe_particles(recipe, tmp_path))
     assert [each.name for each in loaded.particles] == ["angular-1", "bead-1"]
     assert ["missing.stl" in problem.sentence for problem in loaded.problems] == [True]
 
 
 @pytest.mark.slow
 def test_that_the_grains_of_a_scan_are_a_sample() -> None:
-    loaded = finish(load_recipe_particles(recipe_of(volumes=[VolumeEntry(file="sample:labels")]), Path()))
+    loaded = result_of(load_recipe_particles(recipe_of(volumes=[VolumeEntry(file="sample:labels")]), Path()))
     assert len(loaded.particles) > 20
     files = {Path(each.source.path).name for each in loaded.particles if each.source}
     assert files == {"synthetic-labels.tif"}
@@ -343,7 +334,7 @@ def test_that_a_real_report_has_every_figure_or_says_why_not(
 
     monkeypatch.setattr(heap_sections, "study_coarsening", breaks)
     settings = ReportSettings(drawn=1, study_particles=2, representatives=2, heap=0)
-    first = finish(write_report(particles, tmp_path / "one", settings))
+    first = result_of(write_report(particles, tmp_path / "one", settings))
     text = (first.folder / PAGE).read_text(encoding="utf-8")
     assert Tags(text).headings == [*write.PARTS, "How it was made"]
     assert text.count("data:image/png") == 3  # Figs. 2, 3 and 7
@@ -353,5 +344,5 @@ def test_that_a_real_report_has_every_figure_or_says_why_not(
     assert "3.075" in text  # the density of Table 1
     assert n_pages((first.folder / PDF).read_bytes()) >= 3
     (tmp_path / "other").mkdir()
-    second = finish(write_report(particles, tmp_path / "other" / "one", settings))
+    second = result_of(write_report(particles, tmp_path / "other" / "one", settings))
     assert hashes(second.folder) == hashes(first.folder)

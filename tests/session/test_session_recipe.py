@@ -16,6 +16,7 @@ from regolith_studio.imaging.settings import ExtractionSettings, SplittingSettin
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
@@ -38,14 +39,6 @@ ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)
 LEVEL = 2
 
 
-def ended(steps: Any) -> Any:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
 def files(folder: Path) -> dict[str, bytes]:
     found = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
     return {name: path.read_bytes() for name, path in found.items()}
@@ -55,12 +48,14 @@ def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> Ses
     """By way of the recipe on disk; the dataset of the session has the name of the run's folder."""
     particles, choices = [entry.particle for entry in session.particles], session.choices
     options = DatasetOptions(preset=None if choices.preset_modified else choices.preset)
-    ended(build_dataset_folder(particles, choices.coarsening_request, place / "window" / "grains", options))
+    result_of(
+        build_dataset_folder(particles, choices.coarsening_request, place / "window" / "grains", options)
+    )
     session_recipe = SessionRecipe.of(session.particles, session.choices, ONLY_DATASET)
     saved = place / "recipe.json"
     recipe, models = session_recipe.files_for(saved)
     write_files({**models, saved: recipe.to_json().encode()})
-    done = ended(run_recipe(read_recipe(saved), saved.parent, place / "run" / "grains"))
+    done = result_of(run_recipe(read_recipe(saved), saved.parent, place / "run" / "grains"))
     assert not done.problems
     assert files(place / "run" / "grains" / "dataset") == files(place / "window" / "grains")
     return session_recipe
@@ -152,11 +147,11 @@ def labels(tmp_path: Path) -> Path:
 
 def extracted(session: Session, given: VolumeInput, settings: GrainSettings) -> None:
     """What the page of scans does."""
-    scan = ended(read_scan(given))
+    scan = result_of(read_scan(given))
     found, grey = scan.volume, None
     if found.kind == "grey":
-        found, grey = ended(find_grains(scan, settings.segmentation)).segmentation.labels, found
-    made = ended(extract_labels(found, settings.extraction, given.path, grey))
+        found, grey = result_of(find_grains(scan, settings.segmentation)).segmentation.labels, found
+    made = result_of(extract_labels(found, settings.extraction, given.path, grey))
     session.adopt(made.particles, origin=VolumeSource.of(entry_of(given, settings), made.particles))
 
 
@@ -188,7 +183,7 @@ def test_that_grains_of_the_shipped_scan_are_the_same_in_a_run(session: Session,
     session.keep({entry.id for entry in session.particles[:6]})
     session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
     assert session_recipe.recipe.volumes[0].file == "sample:grey"
-    found = ended(extract_file(VolumeInput(sample_file("grey")), settings)).extraction.particles
+    found = result_of(extract_file(VolumeInput(sample_file("grey")), settings)).extraction.particles
     assert [entry.id for entry in session.particles] == [each.name for each in found[:6]]
 
 
@@ -199,10 +194,10 @@ def drawn(
     edit: Callable[[Any], Any] = lambda model: model,
 ) -> None:
     """What the page of models does."""
-    fitted = ended(fit_shapes(source, order))
-    made = ended(draw_shapes(edit(fitted.model), order))
+    fitted = result_of(fit_shapes(source, order))
+    made = result_of(draw_shapes(edit(fitted.model), order))
     origin = VirtualSource.of(made, fitted, LEVEL)
-    particles = ended(make_particles(made.draws, made.model, origin.population.name, LEVEL))
+    particles = result_of(make_particles(made.draws, made.model, origin.population.name, LEVEL))
     session.adopt(particles, origin=origin)
 
 

@@ -2,9 +2,7 @@
 
 import pickle
 import re
-from collections.abc import Generator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +29,7 @@ from regolith_studio.studies.loss_variants import (
     paper_variants,
     sensitivity_variants,
 )
-from regolith_studio.studies.progress import StudyProgress
+from tests.steps import played
 
 ROWS = (
     LossVariant("quadric", LossWeights.of(), "quadric", 12),
@@ -46,26 +44,17 @@ def egg(stretch: float) -> Mesh:
     return Mesh(sphere.vertices * bumps[:, None] * (stretch, 1.0, 0.7), sphere.faces)
 
 
-def finished(steps: Generator[StudyProgress, None, CoarseningStudy]) -> tuple[Any, CoarseningStudy]:
-    told = []
-    while True:
-        try:
-            told.append(next(steps))
-        except StopIteration as end:
-            return told, end.value
-
-
 @pytest.fixture(scope="module")
 def study() -> CoarseningStudy:
     particles = [Particle(f"egg {s}", egg(s)) for s in (1.2, 1.5)]
     particles.insert(1, Particle("open", Mesh(egg(1.0).vertices, egg(1.0).faces[5:])))
-    return finished(coarsening_study(particles, ROWS))[1]
+    return played(coarsening_study(particles, ROWS))[1]
 
 
 def test_that_a_grain_has_the_same_errors_wherever_it_stands_in_a_sample() -> None:
     rows = (LossVariant("all", LossWeights.from_preset("all"), "annealing", 12, (("iterations", 10),)),)
     particles = [Particle(f"egg {s}", egg(s)) for s in (1.2, 1.5, 1.2)]
-    errors = finished(coarsening_study(particles, rows))[1].errors
+    errors = played(coarsening_study(particles, rows))[1].errors
     assert np.array_equal(errors[0], errors[2])
     assert not np.array_equal(errors[0], errors[1])
 
@@ -91,7 +80,7 @@ def test_that_a_bad_particle_is_listed_and_stops_nothing(study: CoarseningStudy)
 @pytest.mark.parametrize("box_metric", ["exact", "trimesh"])
 def test_that_the_quadric_row_is_measured_on_the_polyhedron_that_is_shown(box_metric: str) -> None:
     rows = (LossVariant("start", LossWeights.of(), "exact", 12), ROWS[0])
-    study = finished(coarsening_study([Particle("egg", egg(1.5))], rows, box_metric=box_metric))[1]
+    study = played(coarsening_study([Particle("egg", egg(1.5))], rows, box_metric=box_metric))[1]
     shown = coarsen(egg(1.5), 12, "quadric")
     volume = COLUMNS.index("volume")
     hull = ConvexHull(shown.polyhedron.vertices)
@@ -130,7 +119,7 @@ def test_that_a_study_travels_between_processes(study: CoarseningStudy) -> None:
 
 
 def test_that_progress_counts_particles() -> None:
-    told, _ = finished(coarsening_study([Particle("a", egg(1.3))], ROWS[:1]))
+    told, _ = played(coarsening_study([Particle("a", egg(1.3))], ROWS[:1]))
     assert [(step.done, step.total) for step in told] == [(1, 1)]
     assert told[0].partial is not None
 

@@ -12,6 +12,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.particle_jobs import find_faults, measure_particle
 from regolith_studio.scene.overlays import FAULT_COLOURS, show_faults
 from regolith_studio.session.results import ParticleEntry
@@ -33,14 +34,6 @@ def ugly():
     """A ball inside out that lacks a triangle, with a smaller one beside it."""
     faces = np.concatenate([BALL.faces[1:, ::-1], SMALL.faces + len(BALL.vertices)])
     return Mesh(np.concatenate([BALL.vertices, SMALL.vertices]), faces)
-
-
-def played(steps):
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
 
 
 def cells(panel):
@@ -87,7 +80,7 @@ def test_that_nothing_is_reported_before_it_is_measured(panel):
 
 def test_that_the_legend_names_what_was_found_with_its_number(panel):
     ours = entry(ugly())
-    found = played(find_faults(ours.particle, ours.visibility))
+    found = result_of(find_faults(ours.particle, ours.visibility))
     panel.show_legend({kind: len(triangles) for kind, triangles in found.items()})
     words = panel.legend.text().replace("&nbsp;", " ")
     assert "closed holes (1)" in words

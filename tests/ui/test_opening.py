@@ -12,6 +12,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.guide import chapter
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.shape_files import ShapeSource
@@ -218,18 +219,10 @@ def drawn(n=3):
     rows = rng.normal(size=(12, 9)) * 0.05
     rows[:, 0] = 10 * np.sqrt(4 * np.pi)
     request = GenerationRequest(n=n, l_max=2)
-    fitted = outcome(fit_shapes(ShapeSource(Sample(rows), "rough", "0" * 64), request))
-    found = outcome(draw_shapes(fitted.model, request))
+    fitted = result_of(fit_shapes(ShapeSource(Sample(rows), "rough", "0" * 64), request))
+    found = result_of(draw_shapes(fitted.model, request))
     origin = VirtualSource.of(found, fitted, 3)
-    return outcome(make_particles(found.draws, found.model, origin.population.name, 3)), origin
-
-
-def outcome(steps):
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
+    return result_of(make_particles(found.draws, found.model, origin.population.name, 3)), origin
 
 
 @pytest.mark.slow

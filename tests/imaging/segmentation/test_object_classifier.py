@@ -17,6 +17,7 @@ from regolith_studio.imaging.segmentation.object_classifier import (
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment, segmentation_steps
 from regolith_studio.imaging.settings import SplittingSettings
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.jobs.events import result_of
 
 GRAIN, SEVERAL, ARTEFACT = range(3)
 CELL, ACROSS = 34, 3
@@ -49,19 +50,11 @@ def scene(seed=3):
     return Volume(np.clip(values, 0, 255).astype(np.uint8), np.ones(3), "grey", "scene"), kinds, centres
 
 
-def finished(steps):
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
 @pytest.fixture(scope="module")
 def found():
     volume, kinds, centres = scene()
     labels = segment(volume, SegmentationSettings(splitting=STICKY)).labels
-    return volume, kinds, centres, labels, finished(describe_objects(labels, volume))
+    return volume, kinds, centres, labels, result_of(describe_objects(labels, volume))
 
 
 def examples_of(kinds, centres, count):
@@ -126,7 +119,7 @@ def test_that_the_descriptors_of_a_ball_are_those_of_geometry():
     ball = ((x - 25) ** 2 + (y - 25) ** 2 + (z - 25) ** 2 <= 20**2).astype(np.int32)
     labels = Volume(ball, np.full(3, 2.0), "labels", "ball")
     grey = Volume(np.where(ball, 130, 20).astype(np.uint8), np.full(3, 2.0), "grey", "ball")
-    found = dict(zip(OBJECT_FEATURES, finished(describe_objects(labels, grey)).vectors[0], strict=True))
+    found = dict(zip(OBJECT_FEATURES, result_of(describe_objects(labels, grey)).vectors[0], strict=True))
     assert found["log of the equivalent diameter"] == pytest.approx(np.log(80), abs=0.01)
     assert 0.9 < found["sphericity"] < 1.0
     assert found["mean grey value"] == 130
@@ -141,7 +134,7 @@ def test_that_half_of_a_cut_cube_touches_with_a_sixth_of_its_surface():
     labels = np.zeros((20, 12, 12), dtype=np.int32)
     labels[2:10, 2:10, 2:10], labels[10:18, 2:10, 2:10] = 1, 2
     volume = Volume(labels, np.ones(3), "labels", "cubes")
-    vectors = finished(describe_objects(volume, Volume(labels, np.ones(3), "grey", "cubes"))).vectors
+    vectors = result_of(describe_objects(volume, Volume(labels, np.ones(3), "grey", "cubes"))).vectors
     assert np.allclose(vectors[:, -1], 1 / 6)
 
 

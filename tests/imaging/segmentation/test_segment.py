@@ -33,6 +33,7 @@ from regolith_studio.imaging.settings import (
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
+from regolith_studio.jobs.events import result_of
 
 PLAIN = SegmentationSettings(
     DenoiseSettings("none"), cleaning=CleaningSettings(min_voxels=1, fill_pores=False)
@@ -46,15 +47,6 @@ def overlaps(truth: np.ndarray, found: np.ndarray) -> np.ndarray:
     shared = table[1:, 1:]
     union = table[1:].sum(axis=1)[:, None] + table[:, 1:].sum(axis=0)[None] - shared
     return (shared / union).max(axis=1)
-
-
-def result_of(steps):
-    """What a generator returns in the end."""
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
 
 
 def grey(mask: np.ndarray, name: str = "test") -> Volume:
