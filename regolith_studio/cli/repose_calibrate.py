@@ -121,7 +121,9 @@ def calibration_in_words(document: dict[str, Any]) -> str:
     """The result of a calibration."""
     lines = []
     known = document["n_usable_runs"] > 0
-    for each in document["parameters"] if known else ():
+    for each in document["parameters"]:
+        if not each["informed"]:
+            continue
         if "choices" in each:
             chances = ", ".join(f"{name} {100 * p:.0f} %" for name, p in each["probabilities"].items())
             lines.append(f"{each['name']:20} {each['best']} (probabilities: {chances})")
@@ -129,7 +131,8 @@ def calibration_in_words(document: dict[str, Any]) -> str:
         low, high = each["interval"]
         lines.append(
             f"{each['name']:20} {each['best']:.4g} ({low:.4g} to {high:.4g}, "
-            f"{100 * document['confidence']:g} % interval; before {each['low']:g} to {each['high']:g})"
+            f"{100 * document['confidence']:g} % interval, {100 * each['relative_width']:.0f} % of the width "
+            f"before any run; range {each['low']:g} to {each['high']:g})"
         )
     for each in document["targets"] if known else ():
         lines.append(
@@ -141,4 +144,6 @@ def calibration_in_words(document: dict[str, Any]) -> str:
         f"{name} {value if isinstance(value, str) else format(value, 'g')}"
         for name, value in document["next_run"].items()
     )
-    return "\n".join([*lines, f"{'next run':20} {proposed}"])
+    points = f"{document['effective_points']:.0f} of {document['n_points']} values in the range"
+    runs = f"{document['n_usable_runs']} of {document['n_runs']} runs usable; as many as {points} remain"
+    return "\n".join([*lines, f"{'next run':20} {proposed}", f"{'data':20} {runs}"])

@@ -167,6 +167,11 @@ class CalibrationPosterior:
     def best(self) -> FloatArray:
         return np.asarray(self.points[self.best_index])
 
+    @property
+    def effective_points(self) -> float:
+        """Number of equally probable points with the same spread of weights: all before the first run."""
+        return float(1.0 / (self.weights**2).sum())
+
 
 def calibrate(
     parameters: Sequence[CalibrationParameter], targets: Sequence[WantedResult], runs: CalibrationRuns
@@ -233,6 +238,14 @@ def density_of(
         weights=posterior.weights * bins,
     )
     return (edges[1:] + edges[:-1]) / 2, height
+
+
+def relative_width(posterior: CalibrationPosterior, parameter: CalibrationParameter, index: int) -> float:
+    """Width of a parameter's interval over that of the prior; of a choice the effective share of choices."""
+    if parameter.choices:
+        chances = density_of(posterior, parameter, index)[1] / len(parameter.choices)
+        return float(1.0 / (chances**2).sum() / len(parameter.choices))
+    return float(np.ptp(posterior.intervals[index])) / (CONFIDENCE * (parameter.high - parameter.low))
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,6 +18,7 @@ from regolith_studio.studies.calibration import (
     WantedResult,
     calibrate,
     density_of,
+    relative_width,
 )
 from regolith_studio.version import __version__
 
@@ -25,6 +26,8 @@ ANGLE, BULK_DENSITY = "angle", "bulk_density"
 UNITS = {ANGLE: "deg", BULK_DENSITY: "kg/m^3"}
 DATASET = "dataset"
 """Parameter that is one of several datasets, by their names."""
+MAX_RELATIVE_WIDTH = 0.9
+"""Of an interval, in widths of the prior's, above which the runs have not moved the posterior."""
 MAX_MISFIT = 2.0
 """Standard deviations between the predicted and the wanted results above which these are out of reach."""
 
@@ -105,6 +108,11 @@ class ReposeCalibration:
         names = [each.name for each in self.targets]
         return tuple(run for run in self.runs if not np.isnan([run.result(name) for name in names]).all())
 
+    def is_informed(self, index: int) -> bool:
+        """Whether the runs have narrowed a parameter, so that its posterior is more than the prior."""
+        width = relative_width(self.posterior, self.parameters[index], index)
+        return bool(self.usable_runs) and width <= MAX_RELATIVE_WIDTH
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what the calibration could not find."""
@@ -115,7 +123,11 @@ class ReposeCalibration:
         if self.runs and not self.usable_runs:
             template = N_("No run can be used, so that there is no value: take 1,000 particles or more.")
             sentences.append(Message(template))
-        elif self.posterior.misfit > MAX_MISFIT:
+        for k, each in enumerate(self.parameters):
+            if self.usable_runs and not self.is_informed(k):
+                template = N_("The runs say next to nothing of {name}: no value is given.")
+                sentences.append(Message(template, name=each.name.replace("_", " ")))
+        if self.usable_runs and self.posterior.misfit > MAX_MISFIT:
             template = N_(
                 "No values in the range give the wanted results: the nearest prediction is {count} "
                 "standard deviations away. Take a wider range, other parameters or other particles."
@@ -186,6 +198,8 @@ def calibration_document(calibration: ReposeCalibration) -> dict[str, Any]:
         "n_usable_runs": len(calibration.usable_runs),
         "targets": [_target(calibration, k) for k in range(len(calibration.targets))],
         "parameters": [_parameter(calibration, k) for k in range(len(calibration.parameters))],
+        "effective_points": posterior.effective_points,
+        "n_points": len(posterior.points),
         "misfit": posterior.misfit,
         "next_run": values_of(calibration.parameters, calibration.next_values),
         "runs": [_run(run, calibration) for run in calibration.runs],
@@ -208,24 +222,27 @@ def _target(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
 
 def _parameter(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
     parameter, posterior = calibration.parameters[k], calibration.posterior
-    known = bool(calibration.usable_runs)
+    known = calibration.is_informed(k)
+    moved = {"relative_width": relative_width(posterior, parameter, k), "informed": known}
     if parameter.choices:
         probabilities = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
         return {
             "name": parameter.name,
+            **moved,
             "choices": list(parameter.choices),
             "best": parameter.choices[int(posterior.best[k])] if known else None,
-            "probabilities": probabilities[-1],
+            "probabilities": probabilities[-1] if known else None,
             "probabilities_after_each_run": probabilities,
         }
     values, density = density_of(posterior, parameter, k)
     return {
         "name": parameter.name,
+        **moved,
         "low": parameter.low,
         "high": parameter.high,
         "best": float(posterior.best[k]) if known else None,
         "interval": posterior.intervals[k].tolist() if known else None,
-        "density": {"values": values.tolist(), "relative_to_prior": density.tolist()},
+        "density": {"values": values.tolist(), "relative_to_prior": density.tolist()} if known else None,
         "intervals_after_each_run": [each.intervals[k].tolist() for each in calibration.posteriors],
     }
 

@@ -51,6 +51,8 @@ def test_that_the_friction_of_known_heaps_is_found(calibrated: Command, tmp_path
     found = result(tmp_path / "found")
     (friction,) = found["parameters"]
     assert friction["interval"][0] < 0.6 < friction["interval"][1]
+    assert friction["relative_width"] == pytest.approx(np.ptp(friction["interval"]) / (0.9 * 1.15))
+    assert found["effective_points"] < 0.5 * found["n_points"]
     assert np.ptp(friction["interval"]) < 0.5 * np.ptp(friction["intervals_after_each_run"][0])
     assert len(friction["intervals_after_each_run"]) == 7
     names = [each.folder.name for each in find_runs(tmp_path / "found")]
@@ -115,6 +117,8 @@ def test_that_runs_without_an_angle_give_no_value(
     assert (found["n_runs"], found["n_usable_runs"]) == (2, 0)
     assert found["parameters"][0]["best"] is None
     assert found["parameters"][0]["interval"] is None
+    assert found["parameters"][0]["density"] is None
+    assert found["effective_points"] == pytest.approx(found["n_points"], rel=0.01)
     printed = capsys.readouterr()
     assert "No run can be used" in printed.err
     assert "% interval" not in printed.out
@@ -159,11 +163,15 @@ def test_that_with_several_datasets_the_dataset_is_a_parameter(
     found = result(tmp_path / "found")
     _, dataset = found["parameters"]
     assert dataset["choices"] == [boxes_folder.name, "truncated"]
-    assert sum(dataset["probabilities"].values()) == pytest.approx(1.0)
+    last = dataset["probabilities_after_each_run"][-1]
+    assert sum(last.values()) == pytest.approx(1.0)
+    assert 0.9 < dataset["relative_width"] < 1.0  # so alike that three runs do not tell them apart
+    assert (dataset["informed"], dataset["best"], dataset["probabilities"]) == (False, None, None)
     assert len(dataset["probabilities_after_each_run"]) == 4
     assert {run["dataset"] for run in found["runs"]} == {boxes_folder.name, "truncated"}
-    printed = capsys.readouterr().out
-    assert f"{dataset['best']} (probabilities: {boxes_folder.name} " in printed
+    printed = capsys.readouterr()
+    assert "(probabilities: " not in printed.out
+    assert "The runs say next to nothing of dataset" in printed.err
     before = tree(tmp_path / "found")
     assert calibrated(*words) == 0
     assert tree(tmp_path / "found") == before
@@ -207,8 +215,7 @@ def test_that_ranges_of_parameters_are_checked_before_any_run(
 def test_that_the_figure_shows_every_parameter(calibrated: Command, tmp_path: Path) -> None:
     words = ("--parameter", "static_friction=0.1,1", "--parameter", "rolling_friction=0,0.3")
     assert calibrated("--angle", "25", "--runs", "1", *words) == 0
-    assert [each["name"] for each in result(tmp_path / "found")["parameters"]] == [
-        "static_friction",
-        "rolling_friction",
-    ]
+    static, rolling = result(tmp_path / "found")["parameters"]
+    assert (static["name"], rolling["name"]) == ("static_friction", "rolling_friction")
+    assert static["informed"] is (static["relative_width"] <= 0.9) is (static["density"] is not None)
     assert (tmp_path / "found" / "calibration.png").is_file()

@@ -16,6 +16,7 @@ from regolith_studio.studies.calibration import (
     WantedResult,
     calibrate,
     density_of,
+    relative_width,
 )
 
 FRICTION = CalibrationParameter("static_friction", 0.2, 1.2)
@@ -176,3 +177,16 @@ def test_that_intervals_of_100_surrogates_cover_the_truth_and_shrink_to_a_third(
     cases = [calibrate_surrogate(seed) for seed in range(100)]
     assert 85 <= sum(case.covers() for case in cases) <= 95
     assert np.mean([case.shrinkage() for case in cases]) <= 1 / 3
+
+
+def test_that_the_prior_has_all_points_and_its_own_width_and_runs_leave_less() -> None:
+    dataset = CalibrationParameter.of_choices("dataset", ["a", "b", "c", "d"])
+    nothing = CalibrationRuns.of([], [], [], 2, 1)
+    before = calibrate([FRICTION, dataset], [angle(30.0, 1.0)], nothing)
+    assert before.effective_points == pytest.approx(len(before.points), rel=0.01)
+    assert relative_width(before, FRICTION, 0) == pytest.approx(1.0, abs=0.02)
+    assert relative_width(before, dataset, 1) == pytest.approx(1.0)
+    after = line(angle(20.0, 1.0), noise=0.02)
+    half = QUANTILE / 20.0
+    assert relative_width(after, FRICTION, 0) == pytest.approx(2 * half / CONFIDENCE, abs=0.01)
+    assert after.effective_points < 0.3 * len(after.points)

@@ -122,12 +122,15 @@ def _draw_density(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     posterior, parameter = calibration.posterior, calibration.parameters[k]
     where, density = density_of(posterior, parameter, k)
     if parameter.choices:
-        axis.bar(where, density, color=POSTERIOR, alpha=0.4)
         _name_choices(axis, parameter.choices)
+    if not calibration.is_informed(k):
+        axis.set_title("not narrowed by the runs", fontsize="medium")
+    elif parameter.choices:
+        axis.bar(where, density, color=POSTERIOR, alpha=0.4)
     else:
         axis.fill_between(where, density, step="mid", color=POSTERIOR, alpha=0.4)
-        if calibration.usable_runs:
-            axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
+        axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
+    if not parameter.choices:
         axis.axvline(calibration.next_values[k], color="0.3", linestyle=":", label="next run")
     axis.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--", label="before the first run")
     axis.set_xlabel(_label(calibration, k))
@@ -153,7 +156,7 @@ def _draw_intervals(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     numbers = np.arange(len(intervals))
     axis.fill_between(numbers, *intervals.T, color=POSTERIOR, alpha=0.4)
     best = [float(each.best[k]) for each in calibration.posteriors]
-    if calibration.usable_runs:
+    if calibration.is_informed(k):
         axis.plot(numbers[1:], best[1:], "o-", color=POSTERIOR)
     axis.set_title(f"best and {100 * CONFIDENCE:g} % interval", fontsize="medium")
     axis.set_xlabel("runs")

@@ -115,7 +115,7 @@ class CalibrationPanel(RunPanel):
 
     def _draw(self) -> None:
         calibration = self._calibration
-        if calibration is None or not calibration.usable_runs:
+        if calibration is None or not calibration.is_informed(0):
             self.prediction.set_curves([])
             self.posterior.set_curves([])
             self.posterior.set_marker(None)
@@ -141,12 +141,12 @@ def _number(name: str, accessible: str, low: float, high: float, value: float, u
 
 def _record(calibration: ReposeCalibration) -> ResultRecord:
     """What is known of the parameter, the next run, and warnings."""
-    usable, runs = len(calibration.usable_runs), len(calibration.runs)
+    runs = len(calibration.runs)
     following = tr("next run at {next:.3g}", next=calibration.next_values[0])
     counted = tr_count(N_("1 run"), N_("{count} runs"), runs)
     made_from = f"{counted}; {following}" if runs else ""
     values: tuple[str, ...] = ()
-    if usable:
+    if calibration.is_informed(0):
         low, high = calibration.posterior.intervals[0]
         interval = tr("{low:.3g} to {high:.3g}", low=float(low), high=float(high))
         values = (number_text(float(calibration.posterior.best[0]), ".3g"), interval)
