@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.jobs.repose_jobs import ReposeRequest
+    from regolith_studio.jobs.uncertainty import measure_uncertainty
     from regolith_studio.pipeline import (
         compare_draws,
         draw_particles,
@@ -63,6 +64,7 @@ __all__ = [
     "fit_harmonics",
     "fit_model",
     "measure_repose",
+    "measure_uncertainty",
     "read_dataset",
     "read_mesh",
     "read_particles",
@@ -93,6 +95,7 @@ _MODULES = {
     "fit_harmonics": "harmonics.fit",
     "fit_model": "pipeline",
     "measure_repose": "dem.angle_of_repose",
+    "measure_uncertainty": "jobs.uncertainty",
     "read_dataset": "dataset.folder_io",
     "read_mesh": "readers.particles",
     "read_particles": "readers.particles",

@@ -17,6 +17,7 @@ from regolith_studio.cli import (
     repose,
     serve,
     study,
+    uncertainty,
 )
 from regolith_studio.cli.terminal import CommandGroup
 
@@ -77,6 +78,7 @@ app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
 app.command("demo")(recipe.demo)
 app.command("report")(report.report)
+app.command("uncertainty")(uncertainty.uncertainty)
 app.command("serve")(serve.serve)
 app.command("check")(check.check)
 app.command("forget")(check.forget)

@@ -1448,6 +1448,10 @@
         <translation>Datensatz</translation>
     </message>
     <message>
+        <source>Datasets of the steps</source>
+        <translation>Datensätze der Schritte</translation>
+    </message>
+    <message>
         <source>Default keys</source>
         <translation>Standardtasten</translation>
     </message>
@@ -1466,6 +1470,10 @@
     <message>
         <source>Degree l&lt;sub&gt;max&lt;/sub&gt;</source>
         <translation>Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
+    </message>
+    <message>
+        <source>Degree l_max</source>
+        <translation>Grad l_max</translation>
     </message>
     <message>
         <source>Degree of the particles</source>
@@ -1514,6 +1522,10 @@
     <message>
         <source>Descriptors</source>
         <translation>Deskriptoren</translation>
+    </message>
+    <message>
+        <source>Descriptors that are kept</source>
+        <translation>Erhaltene Deskriptoren</translation>
     </message>
     <message>
         <source>Details</source>
@@ -2100,6 +2112,10 @@
         <translation>{count} Löcher wurden mit {share} der Oberfläche gefüllt.</translation>
     </message>
     <message>
+        <source>Filling</source>
+        <translation>Füllung</translation>
+    </message>
+    <message>
         <source>Filling speed</source>
         <translation>Füllgeschwindigkeit</translation>
     </message>
@@ -2394,6 +2410,10 @@
     <message>
         <source>Grains</source>
         <translation>Körner</translation>
+    </message>
+    <message>
+        <source>Grains and representatives</source>
+        <translation>Körner und Repräsentanten</translation>
     </message>
     <message>
         <source>Grains are dark</source>
@@ -3204,6 +3224,10 @@
         <translation>Verfahren</translation>
     </message>
     <message>
+        <source>Method of coarsening</source>
+        <translation>Verfahren der Vergröberung</translation>
+    </message>
+    <message>
         <source>Method of coarsening.</source>
         <translation>Verfahren der Vergröberung.</translation>
     </message>
@@ -3266,6 +3290,10 @@
     <message>
         <source>Model</source>
         <translation>Modell</translation>
+    </message>
+    <message>
+        <source>Model of drawn particles</source>
+        <translation>Modell gezogener Partikel</translation>
     </message>
     <message>
         <source>Models (*.json)</source>
@@ -5064,6 +5092,10 @@
         <translation>Trennung der Körner</translation>
     </message>
     <message>
+        <source>Separation of touching grains</source>
+        <translation>Trennung sich berührender Körner</translation>
+    </message>
+    <message>
         <source>Sequence of PNG files (*.png)</source>
         <translation>Folge von PNG-Dateien (*.png)</translation>
     </message>
@@ -5130,6 +5162,10 @@
     <message>
         <source>Share of the volume in bodies that were left out</source>
         <translation>Anteil des Volumens in weggelassenen Körpern</translation>
+    </message>
+    <message>
+        <source>Shares of the steps</source>
+        <translation>Anteile der Schritte</translation>
     </message>
     <message>
         <source>Shipped</source>
@@ -5208,6 +5244,10 @@
         <translation>Schriftgröße</translation>
     </message>
     <message>
+        <source>Size of voxels</source>
+        <translation>Größe der Voxel</translation>
+    </message>
+    <message>
         <source>Slice along {axis}</source>
         <translation>Schicht entlang {axis}</translation>
     </message>
@@ -5242,6 +5282,10 @@
     <message>
         <source>Smallest moment of inertia</source>
         <translation>Kleinstes Trägheitsmoment</translation>
+    </message>
+    <message>
+        <source>Smoothing of surfaces</source>
+        <translation>Glättung der Oberflächen</translation>
     </message>
     <message>
         <source>Smoothing of the grey values.</source>
@@ -6008,6 +6052,10 @@
         <translation>Der Lauf wurde vor der Messung abgebrochen.</translation>
     </message>
     <message>
+        <source>The runs say next to nothing of {name}: no value is given.</source>
+        <translation>Die Läufe sagen fast nichts über {name}: Es wird kein Wert angegeben.</translation>
+    </message>
+    <message>
         <source>The same for the Kolmogorov-Smirnov distance</source>
         <translation>Dasselbe für die Kolmogorow-Smirnow-Distanz</translation>
     </message>
@@ -6212,6 +6260,10 @@
         <translation>Schwellwert</translation>
     </message>
     <message>
+        <source>Threshold and denoising</source>
+        <translation>Schwellenwert und Entrauschen</translation>
+    </message>
+    <message>
         <source>Through the body, of a closed mesh</source>
         <translation>Durch den Körper, bei einem geschlossenen Netz</translation>
     </message>
@@ -6318,6 +6370,10 @@
     <message>
         <source>Uncertainty</source>
         <translation>Unsicherheit</translation>
+    </message>
+    <message>
+        <source>Uncertainty of descriptors</source>
+        <translation>Unsicherheit der Deskriptoren</translation>
     </message>
     <message>
         <source>Undo</source>
@@ -6442,6 +6498,10 @@
     <message>
         <source>Values</source>
         <translation>Werte</translation>
+    </message>
+    <message>
+        <source>Values with intervals</source>
+        <translation>Werte mit Intervallen</translation>
     </message>
     <message>
         <source>Values, with commas between them</source>
@@ -7520,6 +7580,14 @@
         <translation>keine Flanken</translation>
     </message>
     <message>
+        <source>no other engine is installed</source>
+        <translation>es ist keine andere Engine installiert</translation>
+    </message>
+    <message>
+        <source>no particles are drawn</source>
+        <translation>es werden keine Partikel gezogen</translation>
+    </message>
+    <message>
         <source>no polyhedron</source>
         <translation>kein Polyeder</translation>
     </message>
@@ -7968,6 +8036,10 @@
         <translation>die konvexen Polyeder, ihre Kanten mit 0,5 % des Durchmessers gerundet</translation>
     </message>
     <message>
+        <source>the engine sets it itself</source>
+        <translation>die Engine legt ihn selbst fest</translation>
+    </message>
+    <message>
         <source>the fewest facets with all errors below {limit} %</source>
         <translation>so wenige Facetten, wie alle Fehler unter {limit} % erlauben</translation>
     </message>
@@ -7976,12 +8048,20 @@
         <translation>der Fit bei l&lt;sub&gt;max&lt;/sub&gt; = {degree}</translation>
     </message>
     <message>
+        <source>the input is no scan of grey values</source>
+        <translation>die Eingabe ist kein Scan mit Grauwerten</translation>
+    </message>
+    <message>
         <source>the particle</source>
         <translation>das Partikel</translation>
     </message>
     <message>
         <source>the particles when it was stopped</source>
         <translation>die Partikel beim Abbruch</translation>
+    </message>
+    <message>
+        <source>the polyhedra imitate the surfaces themselves</source>
+        <translation>die Polyeder bilden die Oberflächen selbst nach</translation>
     </message>
     <message>
         <source>to</source>

@@ -1,0 +1,420 @@
+"""Job for the budget of uncertainty: descriptors over a design, heaps with one step changed at a time."""
+
+from collections.abc import Generator, Iterable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from regolith_studio.dem.angle_of_repose import measure_repose
+from regolith_studio.dem.engines import ENGINES, engine_named
+from regolith_studio.dem.evaluation.section import NotAPileError
+from regolith_studio.dem.run_io import read_final_state
+from regolith_studio.dem.shipped_certificates import engine_notes
+from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
+from regolith_studio.io.json_text import json_bytes
+from regolith_studio.jobs.compile_kernels import compile_first_for
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, result_of
+from regolith_studio.jobs.executor import Executor, open_executor
+from regolith_studio.jobs.extraction_settings import VolumeInput
+from regolith_studio.jobs.repose_jobs import ReposeRequest
+from regolith_studio.jobs.repose_study import (
+    DATASETS,
+    STUDY,
+    ReposeVariant,
+    study_place,
+    study_repose,
+    write_study,
+)
+from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
+from regolith_studio.jobs.study_jobs import StudyCheckpoint, hash_of_particles, hash_of_rows
+from regolith_studio.jobs.uncertainty_chain import Chain, GrainSample, Levels, evaluate_rows
+from regolith_studio.messages import N_, Message
+from regolith_studio.studies.repose import ReposeStudy
+from regolith_studio.studies.uncertainty import (
+    FILLING,
+    OUTPUTS,
+    RESAMPLED,
+    AngleBudget,
+    ChainStep,
+    DescriptorBudget,
+    UncertaintyBudget,
+    budget_document,
+    check_count,
+    saltelli_rows,
+)
+
+KIND = "uncertainty"
+"""Of the list of files, and stem of them."""
+ROWS_A_TASK = 24
+"""Rows of the design that one task evaluates: their grains are made once."""
+TOE_FACTOR = 4 / 3
+"""On the minimum height of the lower cut, by which the evaluation itself judges what the cut does."""
+OTHER_ENGINES = ("rapier", "mujoco", "box3d")
+
+
+@dataclass(frozen=True, eq=False)
+class UncertaintyRequest:
+    """How the budget is made; picklable.
+
+    Parameters
+    ----------
+    base
+        Points of the design, a power of two; it has (steps + 2) times as many rows.
+    heaps
+        Seeds of each step; 0 for descriptors alone.
+    repose
+        Of the heaps.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be used.
+    """
+
+    base: int = 16
+    heaps: int = 6
+    repose: ReposeRequest = field(default_factory=ReposeRequest)
+
+    def __post_init__(self) -> None:
+        if self.base < 4 or self.base & (self.base - 1):
+            raise InputError(
+                f"The points of the design are a power of two from 4 on, such as 16 or 64, got {self.base}."
+            )
+        if self.heaps == 1 or self.heaps < 0:
+            raise InputError(f"Differences need two heaps of each step or more, or none, got {self.heaps}.")
+
+
+def uncertainty_steps(
+    chain: Chain,
+    request: UncertaintyRequest,
+    folder: Path,
+    workers: int | Executor = 1,
+    resume: bool = False,
+) -> Steps:
+    """Make the budget in `folder`; partial results and the result are :class:`UncertaintyBudget`.
+
+    The folder holds what is known so far after the descriptors and after every heap. Rows and heaps that
+    are known already are not computed again.
+
+    Parameters
+    ----------
+    workers
+        Tasks and heaps at the same time; they change no result.
+    resume
+        Whether rows of an interrupted run are taken up; heaps always are.
+
+    Raises
+    ------
+    InputError
+        If the grains are too few for an interval.
+    """
+    with (
+        StudyCheckpoint(folder / JOURNAL / f"{KIND}.sqlite", resume) as answers,
+        open_executor(workers) as executor,
+    ):
+        budget = yield from _descriptors(chain, request, answers, executor)
+        _write(budget, folder)
+        if request.heaps:
+            budget = yield from _angles(chain, request, folder, executor, budget)
+            _write(budget, folder)
+    return budget
+
+
+def measure_uncertainty(
+    source: Sequence[Particle] | Volume,
+    folder: Path | str,
+    request: UncertaintyRequest | None = None,
+    workers: int = 1,
+    **settings: Any,
+) -> UncertaintyBudget:
+    """What each step from the voxel to the angle costs, written into `folder`.
+
+    Parameters
+    ----------
+    source
+        Particles, or a scan of grey values or labels.
+    request
+        Size of the design and number of heaps.
+    workers
+        Processes at a time; 0 for one a core.
+    settings
+        Fields of :class:`~regolith_studio.jobs.uncertainty_chain.Chain`: ``grains``, ``coarsening``,
+        ``model``, ``n_representatives``, ``seed``.
+
+    Raises
+    ------
+    RegolithError
+        If the grains are too few for an interval, or the folder cannot be written.
+    """
+    given = source if isinstance(source, Volume) else tuple(source)
+    steps = uncertainty_steps(
+        Chain.of(given, **settings), request or UncertaintyRequest(), Path(folder), workers
+    )
+    return cast("UncertaintyBudget", result_of(steps))
+
+
+def _descriptors(
+    chain: Chain, request: UncertaintyRequest, answers: StudyCheckpoint, executor: Executor
+) -> Generator[Step, None, UncertaintyBudget]:
+    """Evaluate all rows of the design, those of the same grains in one task."""
+    if isinstance(chain.source, tuple):
+        check_count(len(chain.source))
+    yield from compile_first_for(*{method for _, method in chain.choices["method"]})
+    steps = chain.steps
+    design = saltelli_rows(steps, request.base, chain.seed)
+    flat = design.reshape(-1, len(steps)).tolist()
+    named = [{step.key: level for step, level in zip(steps, row, strict=True)} for row in flat]
+    tasks = _tasks(chain, named)
+    yield Started(N_("Uncertainty of descriptors"), len(named) + 1)
+    results = np.full((len(named), len(OUTPUTS)), np.nan)
+    nominal, n_grains, done, problem = np.full(len(OUTPUTS), np.nan), 0, 0, ""
+    recipe = _recipe(chain, request)
+
+    def budget() -> UncertaintyBudget:
+        shaped = results.reshape(*design.shape[:2], len(OUTPUTS))
+        found = DescriptorBudget(steps, nominal, shaped, n_grains)
+        return UncertaintyBudget(found, None, chain.not_counted, recipe)
+
+    answers.open(KIND, (request.base, recipe), recipe["input_sha256"])
+    mapper = answers.wrap(executor.map)
+    for at, found in enumerate(mapper(partial(evaluate_rows, chain), tasks)):
+        for number, means in found["rows"].items():
+            target = nominal if number == "-1" else results[int(number)]
+            target[:] = means
+        problem = problem or found["problem"]
+        if at == 0:
+            n_grains = found.get("n_grains", 0)
+            check_count(n_grains)
+            if not found["rows"]:
+                raise RegolithError(found["problem"])
+        done += len(tasks[at])
+        yield Partial(budget())
+        yield Progress(done, len(named) + 1, problem)
+    return budget()
+
+
+def _tasks(chain: Chain, rows: Sequence[Levels]) -> list[list[tuple[int, Levels]]]:
+    """The present settings as row -1, then all rows by the levels of the scan's steps."""
+    groups: dict[tuple[int, ...], list[tuple[int, Levels]]] = {}
+    scanned = [key for key in ("voxel", "threshold", "splitting", "smoothing") if key in chain.choices]
+    for number, levels in enumerate(rows):
+        groups.setdefault(tuple(levels[key] for key in scanned), []).append((number, levels))
+    parts = [
+        group[k : k + ROWS_A_TASK] for group in groups.values() for k in range(0, len(group), ROWS_A_TASK)
+    ]
+    return [[(-1, {})], *parts]
+
+
+def _hash_of(chain: Chain) -> str:
+    match chain.source:
+        case tuple():
+            return hash_of_particles(chain.source)
+        case Volume():
+            return hash_of_rows(np.asarray(chain.source.array), (str(chain.source.voxel_size),))
+    volume = chain.volume
+    return hash_of_rows(np.asarray(volume.array), (str(volume.voxel_size),))
+
+
+def _recipe(chain: Chain, request: UncertaintyRequest) -> dict[str, Any]:
+    """All settings, as JSON; with the same input and versions they give the same budget."""
+    coarsening = asdict(replace(chain.coarsening, weights=None))  # type: ignore[arg-type]
+    weights = {key: value for key, value in chain.coarsening.weights.items() if value}
+    coarsening |= {"weights": weights, "kept": sorted(chain.coarsening.kept)}
+    source = chain.source
+    return {
+        "source": str(source.path) if isinstance(source, VolumeInput) else chain.kind,
+        "input_sha256": _hash_of(chain),
+        "grains": chain.grains.as_document() if chain.kind != "particles" else None,
+        "coarsening": coarsening,
+        "model": chain.model,
+        "n_representatives": chain.n_representatives,
+        "seed": chain.seed,
+        "levels": {
+            step.key: list(step.levels) if step.key != RESAMPLED else len(step.levels) for step in chain.steps
+        },
+        "design_points": request.base,
+        "heaps": request.heaps,
+        "case": asdict(request.repose.case) if request.heaps else None,
+        "engine": request.repose.engine if request.heaps else None,
+    }
+
+
+def _write(budget: UncertaintyBudget, folder: Path) -> None:
+    """Write tables, document and figure of what is known so far in one step."""
+    from regolith_studio.studies.figures.uncertainty import write_uncertainty  # matplotlib
+
+    with staged_folder(folder, KIND) as stage:
+        write_uncertainty(budget, stage)
+
+
+def _angles(
+    chain: Chain,
+    request: UncertaintyRequest,
+    folder: Path,
+    executor: Executor,
+    budget: UncertaintyBudget,
+) -> Generator[Step, None, UncertaintyBudget]:
+    """Run the heaps of all steps, those of the first seed first, and measure them."""
+    place = folder / JOURNAL / STUDY / DATASETS
+    plan, missing = _plan(chain, request)
+    datasets = yield from _datasets(chain, plan, request, place, executor)
+    rows = []
+    for k in range(request.heaps):
+        for each in plan:
+            key = f"{each.step.key}-{k}" if each.step.key == RESAMPLED else each.step.key
+            run = each.request
+            run = replace(run, case=replace(run.case, seed=run.case.seed + k))
+            rows.append(ReposeVariant(each.step.key, each.step.levels[-1], datasets[key], run))
+    not_counted = (*budget.not_counted, *missing)
+    notes = tuple(dict.fromkeys(note for each in plan for note in engine_notes(_engine_of(each))))
+
+    def angle(study: ReposeStudy) -> UncertaintyBudget:
+        found = _angle_budget([each.step for each in plan], study, request, folder, notes)
+        return replace(budget, angle=found, not_counted=not_counted)
+
+    study = ReposeStudy(())
+    steps = study_repose(rows, folder, 1, executor)
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            study = end.value
+            break
+        if isinstance(step, Partial):
+            study = step.value
+            current = angle(study)
+            if study.runs:  # one file: the journal is in use, and may not be moved for a moment
+                write_bytes(folder / f"{KIND}.json", json_bytes(budget_document(current)))
+            yield Partial(current)
+        else:
+            yield step
+    found = angle(study)
+    write_study(study, folder)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _AngleStep:
+    """A step as it is changed for heaps: levels of the dataset, and how the heap is run."""
+
+    step: ChainStep
+    levels: Levels
+    request: ReposeRequest
+
+
+def _engine_of(each: _AngleStep) -> Any:
+    return engine_named(each.request.engine)
+
+
+def _plan(chain: Chain, request: UncertaintyRequest) -> tuple[list[_AngleStep], list[ChainStep]]:
+    """The present settings first; then each step at its first other level; and what cannot be changed."""
+    how, missing = request.repose, []
+    plan = [_AngleStep(ChainStep(FILLING, N_("Filling"), ("as set",)), {}, how)]
+    for step in chain.steps:
+        if step.key == RESAMPLED:
+            plan.append(_AngleStep(ChainStep(step.key, step.label, ("all grains", "resampled")), {}, how))
+        else:
+            changed = ChainStep(step.key, step.label, step.levels[:2])
+            plan.append(_AngleStep(changed, {step.key: 1}, how))
+    engine = engine_named(how.engine)
+    others = [ENGINES[key] for key in OTHER_ENGINES if key in ENGINES and key != engine.key]
+    other = next((each for each in others if not each.find().problem), None)
+    names = (engine.key, other.key if other else "")
+    step = ChainStep("engine", N_("Engine"), names, "" if other else N_("no other engine is installed"))
+    if other is None:
+        missing.append(step)
+    else:
+        plan.append(_AngleStep(step, {}, replace(how, engine=other.key, settings=None)))
+    settings = engine.Settings() if how.settings is None else how.settings
+    if (pace := getattr(settings, "time_step", None)) is None:
+        missing.append(ChainStep("time_step", N_("Time step"), (), N_("the engine sets it itself")))
+    else:
+        step = ChainStep("time_step", N_("Time step"), (f"{pace:g}", f"{pace / 2:g}"))
+        plan.append(_AngleStep(step, {}, replace(how, settings=replace(settings, time_step=pace / 2))))
+    return plan, missing
+
+
+def _datasets(
+    chain: Chain,
+    plan: Sequence[_AngleStep],
+    request: UncertaintyRequest,
+    place: Path,
+    workers: int | Executor,
+) -> Generator[Step, None, dict[str, Path]]:
+    """A dataset for each step that changes the shapes, one for each seed of the bootstrap; others share."""
+    places: dict[str, Path] = {}
+    jobs: list[tuple[str, Levels]] = []
+    for each in plan:
+        if each.step.key == RESAMPLED:
+            jobs += [(f"{RESAMPLED}-{k}", {RESAMPLED: k}) for k in range(request.heaps)]
+        elif each.levels or each.step.key == FILLING:
+            jobs.append((each.step.key, each.levels))
+        else:
+            places[each.step.key] = place / FILLING
+    yield Started(N_("Datasets of the steps"), len(jobs))
+    nominal = chain.sample({})
+    for number, (name, levels) in enumerate(jobs):
+        places[name] = place / name
+        sample = nominal if not {"voxel", "threshold", "splitting", "smoothing"} & set(levels) else None
+        for step in _dataset(sample or chain.sample(levels), levels, places[name], workers):
+            if isinstance(step, Progress):
+                message = Message(N_("dataset of {value}: {step}"), value=name, step=step.message)
+                yield Progress(number, len(jobs), message)
+    return places
+
+
+def _dataset(sample: GrainSample, levels: Levels, place: Path, workers: int | Executor) -> Steps:
+    """Representatives of the grains at these levels as a dataset; the same grains give the same bytes."""
+    chain = sample.chain
+    if chain.model:
+        particles: Iterable[Particle] = sample.drawn(levels)
+    else:
+        particles = [sample.particles[k] for k in sample.picks(levels)]
+    chosen = tuple(replace(each, name=f"{k:05d}-{each.name}") for k, each in enumerate(particles))
+    options = DatasetOptions(
+        name=place.name,
+        overwrite=True,
+        workers=workers,
+        representatives=RepresentativesRequest(chain.n_representatives),
+    )
+    yield from build_dataset_folder(chosen, chain.request(levels), place, options)
+
+
+def _angle_budget(
+    steps: Sequence[ChainStep],
+    study: ReposeStudy,
+    request: UncertaintyRequest,
+    folder: Path,
+    notes: tuple[str, ...],
+) -> AngleBudget:
+    """The angles of the runs by step and seed, and those of the present settings evaluated otherwise."""
+    first = request.repose.case.seed
+    angles = {step.key: np.full(request.heaps, np.nan) for step in steps}
+    evaluated = np.full(request.heaps, np.nan)
+    settings = request.repose.evaluation
+    other = replace(settings, toe=TOE_FACTOR * settings.toe)
+    for run in study.runs:
+        angles[run.varied][run.seed - first] = np.nan if run.angle is None else run.angle
+        if run.varied == FILLING and run.angle is not None:
+            evaluated[run.seed - first] = _angle_of(study_place(folder, run.folder), other)
+    toes = tuple(f"lower cut at {each.toe:g} d or more" for each in (settings, other))
+    step = ChainStep("evaluation", N_("Evaluation"), toes)
+    changed: dict[str, FloatArray] = {**angles, "evaluation": evaluated}
+    nominal = changed.pop(FILLING)
+    return AngleBudget((*steps[1:], step), nominal, changed, notes)
+
+
+def _angle_of(place: Path, evaluation: Any) -> float:
+    final = read_final_state(place / "final.npz")
+    try:
+        return measure_repose(final.points, final.diameters, evaluation).angle
+    except NotAPileError:
+        return np.nan

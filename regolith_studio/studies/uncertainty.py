@@ -1,0 +1,396 @@
+"""Budget of uncertainty from the scan to the angle of repose: what each step contributes.
+
+A step has equally probable levels, of which the first is the present setting. For descriptors, rows of
+levels are drawn as Saltelli's pairs of samples, and the shares of the variance follow from them (Saltelli et
+al., *Comput. Phys. Commun.* 181 (2010) 259; total shares by Jansen). For the angle, one step at a time is
+changed in heaps of the same seeds.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.stats import f as f_distribution
+from scipy.stats import t as student_t
+from scipy.stats.qmc import Sobol
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.io.tables import Column, Table
+from regolith_studio.messages import N_
+
+KEYS = ("volume", "surface_area", "sphericity", "aspect_ratio")
+UNITS = {"volume": "um^3", "surface_area": "um^2"}
+STAGES = ("grains", "polyhedra")
+OUTPUTS = tuple((stage, key) for stage in STAGES for key in KEYS)
+"""Means of the grains as measured, and of the simulated polyhedra with their sizes."""
+MIN_GRAINS = 20
+"""Below, a bootstrap does not carry an interval."""
+RESAMPLES = 64
+"""Bootstrap samples of the grains, each of them a level."""
+RESAMPLED = "representatives"
+"""Key of the step whose levels are bootstrap samples."""
+FILLING = "filling"
+CONFIDENCE = 0.95
+N_BOOTSTRAP = 500
+MAX_HEAPS = 10_000
+"""Numbers of heaps beyond are stated as more than this."""
+
+
+@dataclass(frozen=True)
+class ChainStep:
+    """A step of the chain.
+
+    Parameters
+    ----------
+    levels
+        What it is set to, the present setting first; all are equally probable.
+    missing
+        Why it is not counted, if it is not.
+    """
+
+    key: str
+    label: str
+    levels: tuple[str, ...] = ()
+    missing: str = ""
+
+
+def check_count(n_grains: int) -> None:
+    """Refuse samples that are too small.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than :data:`MIN_GRAINS` grains.
+    """
+    if n_grains < MIN_GRAINS:
+        raise InputError(
+            f"{n_grains} grains do not carry an interval; {MIN_GRAINS} or more are needed, so at least "
+            f"{MIN_GRAINS - n_grains} more."
+        )
+
+
+def saltelli_rows(steps: Sequence[ChainStep], base: int, seed: int) -> IntArray:
+    """Levels of the steps, shape (d + 2, base, d): samples A and B, and A with each column of B.
+
+    Parameters
+    ----------
+    base
+        A power of two.
+    """
+    d = len(steps)
+    unit = Sobol(2 * d, scramble=True, seed=np.random.default_rng(seed)).random(base)
+    pair = np.floor(unit.reshape(base, 2, d) * [len(step.levels) for step in steps]).astype(np.int64)
+    a, b = pair[:, 0], pair[:, 1]
+    mixed = np.repeat(a[None], d, axis=0)
+    for k in range(d):
+        mixed[k, :, k] = b[:, k]
+    return np.concatenate([a[None], b[None], mixed])
+
+
+def sobol_shares(results: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """First-order and total shares of the steps, shapes (s, d), of results of the shape (d + 2, n, s)."""
+    a, b, mixed = results[0], results[1], results[2:]
+    variance = np.concatenate([a, b]).var(axis=0)
+    safe = np.where(variance > 0.0, variance, np.inf)
+    first = ((b - results[:2].mean(axis=(0, 1))) * (mixed - a)).mean(axis=1) / safe
+    total = 0.5 * ((a - mixed) ** 2).mean(axis=1) / safe
+    return first.T, total.T
+
+
+@dataclass(frozen=True, eq=False)
+class DescriptorBudget:
+    """Means of descriptors over a design.
+
+    Parameters
+    ----------
+    steps
+        Those that vary.
+    nominal
+        Means of the present settings, in the order of :data:`OUTPUTS`.
+    results
+        Of all rows of :func:`saltelli_rows`, shape (d + 2, n, outputs); NaN where not known.
+    n_grains
+        Of the present settings.
+    """
+
+    steps: tuple[ChainStep, ...]
+    nominal: FloatArray
+    results: FloatArray
+    n_grains: int
+
+    @property
+    def known(self) -> FloatArray:
+        """Logarithms of the results, shape (d + 2, m, outputs), of the points that are complete."""
+        complete = np.isfinite(self.results).all(axis=(0, 2))
+        return np.log(self.results[:, complete])
+
+    @property
+    def relative_deviation(self) -> FloatArray:
+        """Standard deviation of the logarithms over both samples; NaN where fewer than two rows are known."""
+        rows = np.log(self.results[:2].reshape(-1, len(OUTPUTS)))
+        rows = rows[np.isfinite(rows).all(axis=1)]
+        return rows.std(axis=0, ddof=1) if len(rows) > 1 else np.full(len(OUTPUTS), np.nan)
+
+    @property
+    def intervals(self) -> FloatArray:
+        """Ends for each output, shape (outputs, 2)."""
+        rows = int(np.isfinite(self.results[:2]).all(axis=2).sum())
+        freedom = max(min(self.n_grains, rows) - 1, 1)
+        half = student_t.ppf((1 + CONFIDENCE) / 2, freedom) * self.relative_deviation
+        return self.nominal[:, None] * np.exp(np.column_stack([-half, half]))
+
+    @cached_property
+    def shares(self) -> tuple[FloatArray, FloatArray] | None:
+        """First-order and total shares with the ends of their intervals, shapes (outputs, d, 3).
+
+        Bootstrap over the points of the design; ``None`` before four of them are complete.
+        """
+        known = self.known
+        n = known.shape[1]
+        if n < 4:
+            return None
+        rng = np.random.default_rng(0)
+        drawn = [sobol_shares(known[:, rng.integers(0, n, n)]) for _ in range(N_BOOTSTRAP)]
+        ends = [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2]
+        pair = [
+            np.stack([value, *np.quantile([each[k] for each in drawn], ends, axis=0)], axis=-1)
+            for k, value in enumerate(sobol_shares(known))
+        ]
+        return pair[0], pair[1]
+
+
+@dataclass(frozen=True)
+class AngleEffect:
+    """What a step does to the angle, in degrees.
+
+    Parameters
+    ----------
+    change, low, high
+        Mean difference of heaps of the same seeds, and its interval; of the bootstrap the standard deviation
+        that it adds.
+    n
+        Pairs of heaps.
+    decided
+        Whether the interval excludes 0.
+    heaps_needed
+        Pairs that would decide it if it is as large as it seems; none if it is decided.
+    """
+
+    step: ChainStep
+    change: float
+    low: float
+    high: float
+    n: int
+    decided: bool
+    heaps_needed: int | None
+
+    @property
+    def variance(self) -> float:
+        """Of two equally probable levels, or of the bootstrap; 0 where it is not decided."""
+        if not self.decided:
+            return 0.0
+        return self.change**2 if self.step.key == RESAMPLED else self.change**2 / 4
+
+
+@dataclass(frozen=True, eq=False)
+class AngleBudget:
+    """Angles of heaps, in degrees; NaN where there is no pile.
+
+    Parameters
+    ----------
+    steps
+        Those that were changed, one at a time.
+    nominal
+        Of the present settings, by seed.
+    changed
+        Of each step, by seed, by its key.
+    notes
+        On the engines.
+    """
+
+    steps: tuple[ChainStep, ...]
+    nominal: FloatArray
+    changed: Mapping[str, FloatArray]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def value(self) -> float:
+        """Mean of the heaps of the present settings."""
+        piles = self.nominal[np.isfinite(self.nominal)]
+        return float(piles.mean()) if len(piles) else np.nan
+
+    @property
+    def filling_variance(self) -> float:
+        """Of the mean, by the seeds of the filling."""
+        piles = self.nominal[np.isfinite(self.nominal)]
+        return float(piles.var(ddof=1) / len(piles)) if len(piles) > 1 else np.nan
+
+    @property
+    def effects(self) -> tuple[AngleEffect, ...]:
+        """Of the steps with two pairs of heaps or more."""
+        found = []
+        for step in self.steps:
+            pairs = np.column_stack([self.nominal, self.changed[step.key]])
+            pairs = pairs[np.isfinite(pairs).all(axis=1)]
+            if len(pairs) > 1:
+                found.append(
+                    _added_spread(step, pairs) if step.key == RESAMPLED else _difference(step, pairs)
+                )
+        return tuple(found)
+
+    @property
+    def variance(self) -> float:
+        """Of the value: that of the filling and of the steps that are decided."""
+        return self.filling_variance + sum(effect.variance for effect in self.effects)
+
+    @property
+    def half_width(self) -> float:
+        """Of the interval of the value, which holds the steps that are decided."""
+        return self._half_width(self.variance)
+
+    @property
+    def half_width_with_undecided(self) -> float:
+        """The same if each undecided step were as large as the far end of its interval."""
+        open_ = [each for each in self.effects if not each.decided]
+        ends = [max(abs(each.low), abs(each.high)) for each in open_]
+        parts = [end**2 / (1 if e.step.key == RESAMPLED else 4) for e, end in zip(open_, ends, strict=True)]
+        return self._half_width(self.variance + sum(parts))
+
+    def _half_width(self, variance: float) -> float:
+        n = int(np.isfinite(self.nominal).sum())
+        return float(student_t.ppf((1 + CONFIDENCE) / 2, n - 1) * variance**0.5) if n > 1 else np.nan
+
+
+def _difference(step: ChainStep, pairs: FloatArray) -> AngleEffect:
+    change = pairs[:, 1] - pairs[:, 0]
+    n, mean, spread = len(change), float(change.mean()), float(change.std(ddof=1))
+
+    def half(count: int) -> float:
+        return float(student_t.ppf((1 + CONFIDENCE) / 2, count - 1) * spread / count**0.5)
+
+    decided = abs(mean) > half(n)
+    needed = None if decided else _first(lambda count: half(count) < abs(mean), n)
+    return AngleEffect(step, mean, mean - half(n), mean + half(n), n, decided, needed)
+
+
+def _added_spread(step: ChainStep, pairs: FloatArray) -> AngleEffect:
+    """Standard deviation that another sample of grains in each heap adds, by the ratio of variances."""
+    n, (same, other) = len(pairs), pairs.var(axis=0, ddof=1).tolist()
+    ends = (1 + CONFIDENCE) / 2, (1 - CONFIDENCE) / 2
+    ratio = other / same if same > 0.0 else np.inf
+
+    def added(quantile: float, count: int) -> float:
+        return float(np.sqrt(max(other / f_distribution.ppf(quantile, count - 1, count - 1) - same, 0.0)))
+
+    low, high = (added(end, n) for end in ends)
+    decided = low > 0.0
+    needed = None
+    if not decided:
+        needed = _first(lambda count: ratio > f_distribution.ppf(ends[0], count - 1, count - 1), n)
+    return AngleEffect(step, float(np.sqrt(max(other - same, 0.0))), low, high, n, decided, needed)
+
+
+def _first(enough: Any, n: int) -> int:
+    """The first number of pairs that suffices, in steps of a twentieth; at most :data:`MAX_HEAPS` + 1."""
+    while n <= MAX_HEAPS and not enough(n):
+        n += max(1, n // 20)
+    return min(n, MAX_HEAPS + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class UncertaintyBudget:
+    """What is known of descriptors and angle.
+
+    Parameters
+    ----------
+    not_counted
+        Steps that the input lacks, with the reasons.
+    recipe
+        Settings, as JSON.
+    """
+
+    descriptors: DescriptorBudget
+    angle: AngleBudget | None = None
+    not_counted: tuple[ChainStep, ...] = ()
+    recipe: Mapping[str, Any] = field(default_factory=dict)
+
+
+def values_table(budget: UncertaintyBudget) -> Table:
+    """One row a quantity: its value and interval."""
+    found = budget.descriptors
+    rows: list[tuple[Any, ...]] = [
+        (f"{key}, {stage}", UNITS.get(key, ""), *map(_number, (found.nominal[k], *found.intervals[k])))
+        for k, (stage, key) in enumerate(OUTPUTS)
+    ]
+    if (angle := budget.angle) is not None:
+        ends = angle.value, angle.value - angle.half_width, angle.value + angle.half_width
+        rows.append(("angle_of_repose", "deg", *map(_number, ends)))
+    columns = (Column("quantity"), Column("unit"), Column("value"), Column("low"), Column("high"))
+    return Table(N_("Values with intervals"), columns, tuple(rows))
+
+
+def steps_table(budget: UncertaintyBudget) -> Table:
+    """One row a quantity and step: its shares of the variance, or what it does to the angle."""
+    names = ("first_order", "first_low", "first_high", "total", "total_low", "total_high")
+    columns = (
+        *(Column("quantity"), Column("step"), Column("levels"), *map(Column, names)),
+        *(Column("change", "deg"), Column("change_low", "deg"), Column("change_high", "deg")),
+        *(Column("share"), Column("pairs"), Column("pairs_to_decide")),
+    )
+    rows: list[tuple[Any, ...]] = []
+    if (shares := budget.descriptors.shares) is not None:
+        for k, (stage, key) in enumerate(OUTPUTS):
+            for d, step in enumerate(budget.descriptors.steps):
+                numbers = map(_number, (*shares[0][k, d], *shares[1][k, d]))
+                rows.append((f"{key}, {stage}", step.key, _levels(step), *numbers, *(None,) * 6))
+    rows += [] if budget.angle is None else _angle_rows(budget.angle)
+    rows += [("", step.key, f"not counted: {step.missing}", *(None,) * 12) for step in budget.not_counted]
+    return Table(N_("Shares of the steps"), columns, tuple(rows))
+
+
+def _angle_rows(angle: AngleBudget) -> list[tuple[Any, ...]]:
+    whole = angle.variance
+    rows: list[tuple[Any, ...]] = []
+    seeds = len(angle.nominal)
+    share = _number(angle.filling_variance / whole if whole > 0.0 else np.nan)
+    rows.append(("angle_of_repose", FILLING, f"{seeds} seeds", *(None,) * 9, share, seeds, None))
+    for each in angle.effects:
+        numbers = map(_number, (each.change, each.low, each.high))
+        share = _number(each.variance / whole) if each.decided else None
+        cells = (*(None,) * 6, *numbers, share, each.n, each.heaps_needed)
+        rows.append(("angle_of_repose", each.step.key, _levels(each.step), *cells))
+    return rows
+
+
+def _levels(step: ChainStep) -> str:
+    return f"{RESAMPLES} bootstrap samples" if step.key == RESAMPLED else " | ".join(step.levels)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def budget_document(budget: UncertaintyBudget) -> dict[str, Any]:
+    """The budget as plain JSON, with the recipe that gave it."""
+    angle = budget.angle
+    tables = {
+        name: [dict(zip([column.name for column in table.columns], row, strict=True)) for row in table.rows]
+        for name, table in (("values", values_table(budget)), ("steps", steps_table(budget)))
+    }
+    document: dict[str, Any] = {
+        "format": "regolith-studio-uncertainty",
+        "schema_version": 1,
+        "confidence": CONFIDENCE,
+        "n_grains": budget.descriptors.n_grains,
+        "design_points": int(budget.descriptors.known.shape[1]),
+        "design_points_asked": int(budget.descriptors.results.shape[1]),
+        **tables,
+        "recipe": dict(budget.recipe),
+    }
+    if angle is not None:
+        half = _number(angle.half_width_with_undecided)
+        document |= {"angle_half_width_with_undecided_deg": half, "engine_notes": list(angle.notes)}
+    return document

@@ -1,0 +1,83 @@
+"""Budgets of uncertainty: shares against closed forms and scipy, effects on the angle against Student's t."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import sobol_indices, ttest_rel
+
+from regolith_studio.studies.uncertainty import (
+    OUTPUTS,
+    RESAMPLED,
+    AngleBudget,
+    ChainStep,
+    DescriptorBudget,
+    saltelli_rows,
+    sobol_shares,
+)
+
+STEPS = tuple(ChainStep(key, key, tuple("abcd")) for key in ("x", "y", "z"))
+
+
+def results_of(rows: Any) -> Any:
+    """y = 3 x + 1 y, and one product, of levels 0 to 3; z does nothing to the first."""
+    x, y, z = np.moveaxis(rows, -1, 0)
+    return np.stack([3.0 * x + y, x * y + z], axis=-1)
+
+
+def test_that_shares_are_those_of_a_sum_and_of_scipy() -> None:
+    """Var(3 x + y) = 9 v + v: shares .9, .1 and 0, first order and total."""
+    results = results_of(saltelli_rows(STEPS, 4096, 1))
+    first, total = sobol_shares(results)
+    assert first[0] == pytest.approx([0.9, 0.1, 0.0], abs=0.02)
+    assert total[0] == pytest.approx([0.9, 0.1, 0.0], abs=0.02)
+    names = dict(zip(("f_A", "f_B", "f_AB"), (results[0].T, results[1].T, results[2:]), strict=True))
+    names["f_AB"] = names["f_AB"].transpose(0, 2, 1)
+    known = sobol_indices(func=names, n=4096)
+    assert total == pytest.approx(known.total_order, abs=1e-12)
+    assert first == pytest.approx(known.first_order, abs=1e-12)
+
+
+def test_that_intervals_of_shares_hold_the_true_ones_and_incomplete_points_are_left_out() -> None:
+    results = np.ones((5, 64, len(OUTPUTS)))
+    results[:, :, 0] = np.exp(0.1 * results_of(saltelli_rows(STEPS, 64, 2))[..., 0])
+    results[2, 0] = np.nan
+    budget = DescriptorBudget(STEPS, np.ones(len(OUTPUTS)), results, 1000)
+    shares = budget.shares
+    assert shares is not None
+    assert budget.known.shape[1] == 63
+    assert (shares[1][0, :, 1] - 1e-12 <= [0.9, 0.1, 0.0]).all()
+    assert (shares[1][0, :, 2] + 1e-12 >= [0.9, 0.1, 0.0]).all()
+    assert np.log(budget.intervals[0, 1]) == pytest.approx(0.1 * 1.98 * (10 * 1.25) ** 0.5, rel=0.05)
+
+
+def test_that_a_difference_is_decided_as_by_a_paired_t_test() -> None:
+    rng = np.random.default_rng(0)
+    nominal = 30.0 + rng.standard_normal(8)
+    changed = {
+        "large": nominal + 3.0 + rng.standard_normal(8),
+        "small": nominal + 0.3 * np.array([1, -1] * 4),
+    }
+    changed["small"] += 0.1
+    budget = AngleBudget(tuple(ChainStep(key, key, ("a", "b")) for key in changed), nominal, changed)
+    large, small = budget.effects
+    known = ttest_rel(changed["large"], nominal).confidence_interval()
+    assert (large.low, large.high) == pytest.approx((known.low, known.high))
+    assert (large.decided, large.heaps_needed) == (True, None)
+    assert (small.decided, small.variance) == (False, 0.0)
+    assert 36 <= (small.heaps_needed or 0) <= 44  # (1.96 + a little) * .32 / .1 squared
+    assert budget.variance == pytest.approx(nominal.var(ddof=1) / 8 + large.change**2 / 4)
+    assert budget.half_width_with_undecided > budget.half_width
+
+
+def test_that_samples_of_grains_count_where_they_widen_the_spread() -> None:
+    same = np.tile([-1.0, 1.0], 5)
+    changed = {RESAMPLED: 6.0 * same}
+    budget = AngleBudget((ChainStep(RESAMPLED, "", ("a", "b")),), same, changed)
+    (effect,) = budget.effects
+    assert effect.decided
+    assert effect.change == pytest.approx((35.0 * 10 / 9) ** 0.5)
+    assert effect.low < effect.change < effect.high
+    (undecided,) = AngleBudget(budget.steps, same, {RESAMPLED: 1.5 * same}).effects
+    assert not undecided.decided
+    assert (undecided.heaps_needed or 0) > 10
