@@ -1,6 +1,9 @@
 """Thousands of virtual particles drawn, measured, coarsened to 20 faces and written as a dataset.
 
-    python -m benchmarks.scale [--particles 300 1000] [--jobs 2] [--json FILE] [--markdown FILE]
+    python -m benchmarks.scale [--particles 300 1000] [--jobs 2] [--json FILE] [--markdown FILE] [--archive]
+
+With ``--archive`` they are read from a ZIP archive of STL of 2,000 triangles, half of them in an archive
+in it, as libraries of simulants are downloaded, and become a dataset for each fraction.
 
 Each count is a whole run of the recipe that a user would give, in a process of its own. Printed are wall
 time, processor time of all processes (what a quiet machine would need on one core), its parts, memory and
@@ -19,6 +22,7 @@ import sys
 import tempfile
 import threading
 import time
+import zipfile
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -30,6 +34,8 @@ SHOWN = ("reading", "measuring", "coarsening", "writing")
 """Stages of this recipe; virtual particles are drawn where others are read."""
 TARGET = (10_000, 6 * 60.0, 1.5)
 """Particles, seconds on two quiet cores, GiB."""
+N_TRIANGLES, N_SHAPES = 2000, 200
+"""Of the meshes in an archive, and how many of them differ."""
 
 
 @dataclass(frozen=True)
@@ -65,30 +71,34 @@ class Run:
         return self.processor / (self.wall * self.jobs)
 
 
-def measured(particles: int, jobs: int) -> Run:
+def measured(particles: int, jobs: int, archive: bool) -> Run:
     """One run, in a process of its own."""
     command = [sys.executable, "-m", "benchmarks.scale", "--one", str(particles), "--jobs", str(jobs)]
+    command += ["--archive"] if archive else []
     said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     return Run(**json.loads(said.splitlines()[-1]))
 
 
-def one(particles: int, jobs: int) -> Run:
+def one(particles: int, jobs: int, archive: bool) -> Run:
     """In the process: perform the recipe in a temporary folder."""
     from regolith_studio.jobs.events import Started
     from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.recipe import recipe_of
     from regolith_studio.session.run_recipe import run_recipe
 
+    population = {"sources": ["ma165"], "n": particles, "l_max": 10}
     wish = recipe_of(
-        inputs=[],
-        population={"sources": ["ma165"], "n": particles, "l_max": 10},
+        inputs=["library.zip"] if archive else [],
+        population=None if archive else population,
         target="particle",
         method="exact",
         settings={"level": "fast"},
         n_facets=20,
-        outputs={"meshes": False},
+        outputs={"meshes": False, "dataset_by_group": archive, "summary": not archive},
     )
     with tempfile.TemporaryDirectory() as place, _watched() as memory:
+        if archive:
+            write_archive(Path(place) / "library.zip", particles)
         folder = Path(place) / "out"
         executor, begun, mark = Executor(jobs), time.perf_counter(), 0.0
         for step in run_recipe(wish, Path(place), folder, executor):
@@ -99,6 +109,29 @@ def one(particles: int, jobs: int) -> Run:
         wall = time.perf_counter() - begun
         stages, disk = _stages(folder), sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
     return Run(particles, jobs, wall, _processor_time(), assembling, stages, memory.most, disk)
+
+
+def write_archive(path: Path, particles: int) -> None:
+    """Virtual particles of 2,000 triangles as STL, half of them in a compressed archive in the archive."""
+    from regolith_studio.geometry.decimation import decimated
+    from regolith_studio.io.stl import stl_bytes
+    from regolith_studio.shape_models.materials import materials
+    from regolith_studio.shape_models.realizations import virtual_mesh
+
+    draws = materials()["ma165"].model(10).draw(min(particles, N_SHAPES), 0)
+    stls = [
+        stl_bytes(decimated(virtual_mesh(draws, index, 4), N_TRIANGLES).triangles, "of the benchmark")
+        for index in range(len(draws))
+    ]
+    inner, half = path.with_name("75-300.zip"), particles // 2
+    with zipfile.ZipFile(inner, "w", zipfile.ZIP_DEFLATED) as fraction:
+        for number in range(half):
+            fraction.writestr(f"p{number}.stl", stls[number % N_SHAPES])
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(inner, inner.name)
+        for number in range(half, particles):
+            archive.writestr(f"75m/p{number}.stl", stls[number % N_SHAPES])
+    inner.unlink()
 
 
 class _watched:  # noqa: N801  a context, read like a sentence
@@ -192,15 +225,16 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--json", type=Path, help="write all numbers")
     parser.add_argument("--markdown", type=Path, help="write the table of docs/speed.md")
+    parser.add_argument("--archive", action="store_true", help="read the particles from an archive")
     parser.add_argument("--one", type=int, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.one:
-        print(json.dumps(asdict(one(options.one, options.jobs))))
+        print(json.dumps(asdict(one(options.one, options.jobs, options.archive))))
         return
-    measured(2, 1)  # compiles kernels, if any have changed
+    measured(4, 1, options.archive)  # compiles kernels, if any have changed
     runs = []
     for particles in options.particles:
-        runs.append(measured(particles, options.jobs))
+        runs.append(measured(particles, options.jobs, options.archive))
         print(f"{particles:,} particles: {runs[-1].wall:.0f} s", file=sys.stderr)
     report(runs)
     if options.json:

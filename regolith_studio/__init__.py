@@ -43,9 +43,11 @@ if TYPE_CHECKING:
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.readers.volumes.read import read_volume
     from regolith_studio.scene.repose_export import export_repose
+    from regolith_studio.studies.matching import ComparedMaterial, match
     from regolith_studio.web.notebook import show
 
 __all__ = [
+    "ComparedMaterial",
     "ContactParameters",
     "DrumRotation",
     "LossWeights",
@@ -63,6 +65,7 @@ __all__ = [
     "extract",
     "fit_harmonics",
     "fit_model",
+    "match",
     "measure_repose",
     "measure_uncertainty",
     "read_dataset",
@@ -81,6 +84,7 @@ _MODULES = {
     "ContactParameters": "dataset.parameters",
     "DrumRotation": "dataset.parameters",
     "LossWeights": "coarsening.weights",
+    "ComparedMaterial": "studies.matching",
     "ReposeCase": "dem.case",
     "ReposeRequest": "jobs.repose_jobs",
     "build_dataset": "dataset.build",
@@ -96,6 +100,7 @@ _MODULES = {
     "fit_model": "pipeline",
     "measure_repose": "dem.angle_of_repose",
     "measure_uncertainty": "jobs.uncertainty",
+    "match": "studies.matching",
     "read_dataset": "dataset.folder_io",
     "read_mesh": "readers.particles",
     "read_particles": "readers.particles",

@@ -11,6 +11,7 @@ from regolith_studio.cli import (
     dataset,
     extract,
     generate,
+    match,
     particles,
     recipe,
     report,
@@ -73,6 +74,7 @@ app.command("describe")(particles.describe)
 app.command("fit")(particles.fit)
 app.command("gallery")(report.gallery)
 app.command("generate")(generate.generate)
+app.command("match")(match.match)
 app.command("coarsen")(particles.coarsen)
 app.command("extract")(extract.extract)
 app.command("run")(recipe.run)

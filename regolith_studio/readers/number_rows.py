@@ -1,6 +1,7 @@
 """Rows of numbers in text, however they are separated; runs in the guarded child process only."""
 
 import csv
+import io
 import math
 import re
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.error_messages import plural, printable
 from regolith_studio.readers.units import unit_named
 
 COMMENTS = (b"#", b"%", b"!", b"//")
@@ -254,3 +255,81 @@ def float_or_nan(word: str | bytes) -> float:
         return float(word)
     except ValueError:
         return math.nan
+
+
+_NAMES = {
+    "max_feret_diameter": ("length", "l", "max feret", "length l"),
+    "width": ("width", "w", "breadth", "width w"),
+    "thickness": ("thickness", "t", "height", "thickness t"),
+    "volume": ("volume", "v"),
+}
+_OWN = ("equivalent_radius", "sphericity", "aspect_ratio", "convexity")
+"""Columns that are taken only under the names that this program gives them: others mean other things."""
+_KEYS = {name: key for key, names in _NAMES.items() for name in names}
+_COLUMN = re.compile(r"\s*([^\[\](),/]*?)[\s,/]*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
+
+
+@dataclass(frozen=True)
+class DescriptorColumns:
+    """Columns of descriptors in a table: keys, the unit that each states or "", and values of shape (n,)."""
+
+    keys: tuple[str, ...]
+    units: tuple[str, ...]
+    values: tuple[NDArray[np.float64], ...]
+    notes: tuple[str, ...]
+
+
+def named_columns(data: bytes) -> DescriptorColumns:
+    """The columns whose names are those of length, width, thickness or a descriptor, among any others.
+
+    Raises FileError with the second half of a sentence if there is none, or no row with numbers in all.
+    """
+    text = utf8_text(data.removeprefix(b"\xef\xbb\xbf")).decode("utf-8")
+    lines = text.splitlines()
+    head = next((line for line in lines if line.strip()), "")
+    separator = max("\t;,", key=head.count)
+    try:
+        rows = [row for row in csv.reader(io.StringIO(text), delimiter=separator) if any(map(str.strip, row))]
+    except csv.Error:
+        raise FileError("is not a table of words and numbers.") from None
+    if not rows:
+        raise FileError("is empty: it has no row of names.")
+    found = {}
+    for place, cell in enumerate(rows[0]):
+        key, unit = _column(cell)
+        if key and key not in found:
+            found[key] = (place, unit)
+    if not found:
+        names = ", ".join(printable(cell.strip())[:20] for cell in rows[0][:6])
+        raise FileError(f"has no column of length, width and thickness; its columns are {names}.")
+    comma = separator != ","
+    words = [[_cell(row, place, comma) for place, _ in found.values()] for row in rows[1:]]
+    values = np.array(words, dtype=np.float64).reshape(-1, len(found))
+    with np.errstate(invalid="ignore"):
+        good = ((values > 0) & (values < 1e30)).all(axis=1)
+    if not good.any():
+        raise FileError(f"has no row with positive numbers in {', '.join(found)}.")
+    lost = int((~good).sum())
+    notes = (
+        [f"Left out {plural(lost, 'row')} without positive numbers in {', '.join(found)}."] if lost else []
+    )
+    units = tuple(unit for _, unit in found.values())
+    return DescriptorColumns(tuple(found), units, tuple(values[good].T), tuple(notes))
+
+
+def _column(cell: str) -> tuple[str, str]:
+    """Key and unit of a column; empty for others."""
+    match = _COLUMN.fullmatch(cell)
+    if match is None:
+        return "", ""
+    name = " ".join(match[1].lower().replace("_", " ").split())
+    key = match[1] if match[1] in (*_OWN, *_NAMES) else _KEYS.get(name, "")
+    if not key:
+        return "", ""
+    unit = unit_named(re.sub(r"[\^]?[23³²]$", "", match[2] or "")) or ""
+    return key, unit
+
+
+def _cell(row: list[str], place: int, decimal_comma: bool) -> float:
+    word = row[place].strip() if place < len(row) else ""
+    return float_or_nan(word.replace(",", ".") if decimal_comma else word)

@@ -31,6 +31,7 @@ TASKS: dict[str, Task] = {
     "volume-slices": tasks.read_slices,
     "positions": tasks.read_positions_file,
     "numbers": tasks.read_number_rows,
+    "named-columns": tasks.read_named_columns,
     "sleep": tasks.sleep,
     "spin": tasks.spin,
 }

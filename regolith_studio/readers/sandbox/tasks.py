@@ -16,7 +16,7 @@ from regolith_studio.io.triangles import used_vertices
 from regolith_studio.messages import N_, Message, to_json
 from regolith_studio.readers.error_messages import message_about, plural, printable
 from regolith_studio.readers.formats import MESH_FORMATS, MeshFormat, ParsedMesh, mesh_suffixes
-from regolith_studio.readers.number_rows import number_rows
+from regolith_studio.readers.number_rows import named_columns, number_rows
 from regolith_studio.readers.position_formats import (
     POSITION_FORMATS,
     ParsedPositions,
@@ -152,6 +152,17 @@ def _unused_note(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tup
     if not unused:
         return ()
     return (f"Left out {plural(unused, 'point')} that no triangle uses.",)
+
+
+def read_named_columns(request: dict[str, Any]) -> SandboxMessage:
+    """Columns of descriptors in the table at ``request["path"]``."""
+    path = Path(request["path"])
+    try:
+        found = named_columns(path.read_bytes())
+    except FileError as error:
+        raise FileError(message_about(path, str(error))) from None
+    header = {"keys": found.keys, "units": found.units, "notes": found.notes}
+    return SandboxMessage(header, found.values)
 
 
 MAX_POSITION = 1e30

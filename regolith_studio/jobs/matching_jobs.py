@@ -1,0 +1,142 @@
+"""Jobs that measure the materials that are compared with a soil, and compare them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from regolith_studio.descriptors.catalogue import DEFAULT_KEYS
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.jobs.compile_kernels import compile_first
+from regolith_studio.jobs.events import Failed, Job, Started, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
+from regolith_studio.messages import N_
+from regolith_studio.readers.particles import FileProblem, MeshFile, find_files, read_file
+from regolith_studio.readers.shape_tables import SUFFIXES, read_shape_table
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.studies.matching import SHAPES, SIZES, ComparedMaterial, match
+from regolith_studio.studies.population import descriptors_of
+
+N_DRAWN = 1000
+"""Particles that a material card is compared by."""
+_CHORDS = ("width", "width_over_length", "thickness_over_width")
+
+
+@dataclass(frozen=True)
+class MatchRequest:
+    """How materials are measured and compared.
+
+    - ``most``: particles of a group that are measured, chosen at random.
+    - ``weighting``: as in :func:`~regolith_studio.studies.matching.match`.
+    """
+
+    unit: str = "um"
+    most: int = 1000
+    weighting: str = "number"
+    seed: int = 0
+
+
+def match_materials(
+    target: str,
+    candidates: Sequence[str],
+    request: MatchRequest = MatchRequest(),
+    workers: int | Executor = 1,
+) -> Steps:
+    """Compare a target with candidates; returns a ``Match`` and a tuple of ``FileProblem``.
+
+    Each is a folder or archive of meshes, whose groups are fractions (those of the target count together), a
+    table of descriptors or of length, width and thickness, or the name of a shipped card.
+
+    Raises
+    ------
+    FileError
+        If one cannot be read.
+    InputError
+        If they cannot be compared.
+    """
+    yield from compile_first("describe")
+    chords = any(Path(name).suffix.lower() in SUFFIXES for name in (target, *candidates))
+    keys = (
+        "volume",
+        *(key for key in (*SIZES, *SHAPES) if key in DEFAULT_KEYS),
+        *(_CHORDS if chords else ()),
+    )
+    problems: list[FileProblem] = []
+    with open_executor(workers) as executor:
+        groups = yield from _measured(target, keys, request, executor, problems)
+        soil = ComparedMaterial(Path(target).name, _joined(list(groups.values())))
+        parts: list[ComparedMaterial] = []
+        for name in candidates:
+            measured = yield from _measured(name, keys, request, executor, problems)
+            title = Path(name).name.removesuffix(".zip")
+            for group, columns in measured.items():
+                inner = group if group not in ("", title) else ""
+                parts.append(ComparedMaterial("/".join(filter(None, (title, inner))), columns))
+    yield Started(N_("Comparing"))
+    return match(soil, parts, request.weighting, request.seed), tuple(problems)
+
+
+_Columns = Mapping[str, np.ndarray]
+
+
+def _measured(
+    name: str, keys: tuple[str, ...], request: MatchRequest, executor: Executor, problems: list[FileProblem]
+) -> Steps:
+    """Columns of each group of what a name stands for."""
+    path = Path(name)
+    if name in materials() and not path.exists():
+        yield Started(N_("Drawing"), N_DRAWN)
+        draws = materials()[name].model().draw(min(N_DRAWN, request.most), request.seed)
+        return {"": _columns(descriptors_of(draws, keys), keys)}
+    if path.suffix.lower() in SUFFIXES:
+        return {"": read_shape_table(path, request.unit).columns}
+    found: list[FileProblem] = []
+    files = _chosen(find_files([path], found), request)
+    if not files:
+        raise FileError(found[0].sentence if found else f"{path.name} holds no mesh.")
+    yield Started(N_("Measuring"), len(files))
+    jobs = [Job(_measure_file, (file, request.unit, keys)) for file in files]
+    results = yield from executor.run_all(jobs, [file.path.name for file in files])
+    rows: dict[str, list[list[float]]] = {}
+    for file, result in zip(files, results, strict=True):
+        if isinstance(result, Failed):
+            found.append(FileProblem(str(file.path), result.sentence))
+        else:
+            rows.setdefault(file.group, []).append([value_of(result)[key] for key in keys])
+    problems += found
+    if not rows:
+        raise FileError(found[0].sentence)
+    return {group: _columns(np.array(table), keys) for group, table in rows.items()}
+
+
+def _chosen(files: Sequence[MeshFile], request: MatchRequest) -> list[MeshFile]:
+    """At most so many files of each group, at random, in their order."""
+    rng = np.random.default_rng(request.seed)
+    groups: dict[str, list[int]] = {}
+    for index, file in enumerate(files):
+        groups.setdefault(file.group, []).append(index)
+    picks = [
+        index
+        for indices in groups.values()
+        for index in rng.choice(indices, min(request.most, len(indices)), replace=False)
+    ]
+    return [files[index] for index in sorted(picks)]
+
+
+def _measure_file(file: MeshFile, unit: str, keys: tuple[str, ...]) -> Steps:
+    yield Started(N_("Measuring"))
+    measured: Descriptors = describe(read_file(file, unit), keys)
+    return measured
+
+
+def _columns(table: np.ndarray, keys: Sequence[str]) -> _Columns:
+    good = table[np.isfinite(table).all(axis=1)]
+    if not len(good):
+        raise InputError("No particle of it bounds a solid.")
+    return dict(zip(keys, good.T, strict=True))
+
+
+def _joined(groups: Sequence[_Columns]) -> _Columns:
+    return {key: np.concatenate([group[key] for group in groups]) for key in groups[0]}

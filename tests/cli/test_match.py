@@ -1,0 +1,45 @@
+"""``match`` of tables as they lie beside meshes of simulants, and of meshes."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+
+def write(path: Path, axes: np.ndarray) -> Path:
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["Particle", "Length (um)", "Width (um)", "Thickness (um)"])
+        writer.writerows([f"p{i}", *row] for i, row in enumerate(axes.tolist()))
+    return path
+
+
+def axes(rng: np.random.Generator, width: float, flat: float, n: int) -> np.ndarray:
+    middle = width * np.exp(0.3 * rng.standard_normal(n))
+    return np.column_stack([middle * 1.4, middle, middle * flat * np.exp(0.05 * rng.standard_normal(n))])
+
+
+@pytest.fixture
+def tables(tmp_path: Path) -> list[Path]:
+    rng = np.random.default_rng(0)
+    soil = np.concatenate([axes(rng, 50, 0.8, 300), axes(rng, 150, 0.6, 100)])
+    named = {"soil": soil, "fine": axes(rng, 50, 0.8, 400), "coarse": axes(rng, 150, 0.6, 400)}
+    return [write(tmp_path / f"{name}.csv", table) for name, table in named.items()]
+
+
+def test_that_the_masses_of_the_nearest_mixture_are_said_in_grams(command, tables, tmp_path):
+    result = command("match", *tables, "-o", tmp_path / "out", "--mass", "1000", "--json")
+    assert result.code == 0
+    fine, coarse, mixture = result.json["materials"]
+    assert coarse["mass"] == pytest.approx(900, abs=40)
+    assert fine["mass_low"] < 100 < fine["mass_high"]
+    assert mixture["energy_in_floors"] < 1 < fine["energy_in_floors"]
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"match.csv", "match.png", "match.svg"}
+    assert "Nearest by itself: fine.csv" in command("match", *tables).out
+
+
+def test_that_what_is_no_material_is_one_sentence(command, tables, tmp_path):
+    missing = command("match", tables[0], tmp_path / "nothing.csv")
+    assert (missing.code, missing.err.count("\n")) == (1, 1)
+    assert command("match", tables[0], tables[1], "--weighting", "mass").code == 2

@@ -1,0 +1,88 @@
+"""The mixture of fractions that is nearest to a soil, on mixtures of known shares."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import InputError
+from regolith_studio.studies.matching import ComparedMaterial, match
+
+MEDIANS = {"fine": (30.0, 0.80), "middle": (90.0, 0.70), "coarse": (250.0, 0.60)}
+
+
+def drawn(rng: np.random.Generator, name: str, n: int) -> dict[str, np.ndarray]:
+    size, sphericity = MEDIANS[name]
+    radii = size * np.exp(0.35 * rng.standard_normal(n))
+    shape = sphericity + 0.05 * rng.standard_normal(n)
+    return {"equivalent_radius": radii, "sphericity": shape, "aspect_ratio": 1 + rng.gamma(4, 0.1, n)}
+
+
+def blended(rng: np.random.Generator, counts: dict[str, int]) -> ComparedMaterial:
+    parts = [drawn(rng, name, n) for name, n in counts.items()]
+    return ComparedMaterial("soil", {key: np.concatenate([part[key] for part in parts]) for key in parts[0]})
+
+
+@pytest.fixture(scope="module")
+def fractions() -> list[ComparedMaterial]:
+    rng = np.random.default_rng(1)
+    return [ComparedMaterial(name, drawn(rng, name, 700)) for name in MEDIANS]
+
+
+@pytest.mark.parametrize("weighting", ["number", "volume"])
+def test_that_the_shares_of_a_known_mixture_are_found(fractions, weighting):
+    counts = {"fine": 600, "middle": 300, "coarse": 100}
+    soil = blended(np.random.default_rng(2), counts)
+    found = match(soil, fractions, weighting)
+    volumes = {name: n * MEDIANS[name][0] ** 3 for name, n in counts.items()}
+    for part in found.parts:
+        expected = volumes[part.name] / sum(volumes.values())
+        low, high = part.mass_interval
+        assert part.mass_share == pytest.approx(expected, abs=0.05)
+        assert low <= part.mass_share <= high
+        assert high - low < 0.25
+    if weighting == "number":
+        assert [part.number_share for part in found.parts] == pytest.approx([0.6, 0.3, 0.1], abs=0.04)
+        assert found.nearest.name == "fine"
+        assert all(part.energy > 3 * part.energy_floor for part in found.parts)
+    assert abs(found.mixture.energy) < 2 * found.mixture.energy_floor
+    assert sum(part.mass_share for part in found.parts) == pytest.approx(1.0)
+    grams = [row[-3] for row in found.table(250.0).rows]
+    assert sum(grams[:-1]) == pytest.approx(grams[-1]) == pytest.approx(250.0)
+
+
+def test_that_a_material_is_within_the_floor_of_itself_and_alone_in_the_mixture(fractions):
+    soil = ComparedMaterial("soil", drawn(np.random.default_rng(3), "middle", 600))
+    found = match(soil, fractions)
+    middle = found.parts[1]
+    assert middle.energy < middle.energy_floor
+    assert middle.number_share == pytest.approx(1.0, abs=0.03)
+    assert middle.wasserstein["sphericity"] < 0.01
+    assert middle.sizes == pytest.approx(found.target_sizes, rel=0.1)
+    assert match(soil, fractions).mixture.energy == found.mixture.energy
+
+
+def test_that_shares_do_not_depend_on_the_unit_of_size(fractions):
+    soil = blended(np.random.default_rng(2), {"fine": 300, "middle": 300, "coarse": 300})
+    larger = [
+        ComparedMaterial(
+            each.name, {**each.columns, "equivalent_radius": 1e3 * each.columns["equivalent_radius"]}
+        )
+        for each in (soil, *fractions)
+    ]
+    first, second = match(soil, fractions), match(larger[0], larger[1:])
+    assert [p.number_share for p in first.parts] == pytest.approx([p.number_share for p in second.parts])
+
+
+def test_that_what_cannot_be_compared_is_one_sentence():
+    rng = np.random.default_rng(0)
+    fine = ComparedMaterial("fine", drawn(rng, "fine", 50))
+    lengths = ComparedMaterial("lengths", {"width": np.ones(50), "width_over_length": np.ones(50)})
+    for candidates, weighting, reason in (
+        ([], "number", "Name at least one candidate"),
+        ([fine, fine], "number", "Two candidates are called fine"),
+        ([ComparedMaterial("few", drawn(rng, "fine", 5))], "number", "few has 5 particles"),
+        ([lengths], "number", "no size and shape in common"),
+        ([ComparedMaterial("no size", {"sphericity": np.ones(50)})], "number", "no size has no size"),
+        ([fine], "mass", "not by 'mass'"),
+    ):
+        with pytest.raises(InputError, match=reason):
+            match(fine, candidates, weighting)
