@@ -152,7 +152,7 @@ class Prepared:
     new: Tree
     seconds: float
     n_bytes: int
-    remarks: tuple[str, ...] = ()
+    notes_on: tuple[str, ...] = ()
     """Lines on stderr of an undisturbed run."""
 
 
@@ -335,17 +335,17 @@ def prepared(arena: Arena, name: str) -> Prepared:
         raise SystemExit(f"{' '.join(words)}: {ended.stderr}")
     new = tree(arena.place)
     size = sum(-(-path.stat().st_size // BLOCK) * BLOCK for path in arena.place.rglob("*") if path.is_file())
-    seconds, remarks = time.monotonic() - begun, tuple(ended.stderr.splitlines())
-    return Prepared(name, words, earlier, tree(earlier), new, seconds, size, remarks)
+    seconds, notes_on = time.monotonic() - begun, tuple(ended.stderr.splitlines())
+    return Prepared(name, words, earlier, tree(earlier), new, seconds, size, notes_on)
 
 
-def judge(arena: Arena, case: Prepared, ended: Ended, row: Row, signalled: bool = False) -> None:
+def evaluate(arena: Arena, case: Prepared, ended: Ended, row: Row, signalled: bool = False) -> None:
     """Count what a run has left."""
     row.runs += 1
     found = tree(arena.place)
     if ended.code:
         lines = ended.stderr.strip().splitlines()
-        said = [line for line in lines if line not in case.remarks and not PROGRESS.match(line)]
+        said = [line for line in lines if line not in case.notes_on and not PROGRESS.match(line)]
         is_sentence = len(said) == 1 and "made a mistake" not in ended.stderr
         row.sentences += is_sentence
         if not is_sentence and not (signalled and not said):
@@ -387,11 +387,11 @@ def kill(arena: Arena, case: Prepared, row: Row, number: signal.Signals, moment:
             print(f"  {case.name}: SIGKILL, {ended.processes} processes", file=sys.stderr)
         for each in arena.temporary.iterdir():  # the system's to clean
             shutil.rmtree(each) if each.is_dir() else each.unlink()
-        judge(arena, case, arena.start(case.words).end(), row)
+        evaluate(arena, case, arena.start(case.words).end(), row)
         row.mixed += killed.mixed
         row.left += killed.left
     else:
-        judge(arena, case, ended, row, signalled=True)
+        evaluate(arena, case, ended, row, signalled=True)
 
 
 @contextmanager
@@ -417,7 +417,7 @@ def fill_disk(arena: Arena, case: Prepared, row: Row, moment: int) -> None:
         found = os.statvfs(arena.place)
         used = (found.f_blocks - found.f_bfree) * found.f_frsize
         remount(arena.place, f"size={used + case.n_bytes * moment // DISK_MOMENTS // BLOCK * BLOCK}")
-        judge(arena, case, arena.start(case.words).end(), row)
+        evaluate(arena, case, arena.start(case.words).end(), row)
 
 
 def forbid(arena: Arena, case: Prepared, row: Row) -> None:
@@ -426,7 +426,7 @@ def forbid(arena: Arena, case: Prepared, row: Row) -> None:
     with small_disk(arena.place):
         arena.reset(case.earlier)
         remount(arena.place, "ro")
-        judge(arena, case, arena.start(case.words).end(), row)
+        evaluate(arena, case, arena.start(case.words).end(), row)
 
 
 def race(arena: Arena, case: Prepared, row: Row) -> None:
@@ -437,7 +437,7 @@ def race(arena: Arena, case: Prepared, row: Row) -> None:
     first, second = (each.end() for each in running)
     if not second.code and (first.code or tree(arena.place) == case.old):  # the other one won
         first, second, case = second, first, replace(case, old=case.new, new=case.old)
-    judge(arena, case, first, row)
+    evaluate(arena, case, first, row)
     row.sentences += bool(second.code) and len(second.stderr.strip().splitlines()) == 1
 
 

@@ -39,7 +39,7 @@ def main(result: Path, apollo: str, n: int, seed: int) -> None:
     coarsen(sample_particles()[0].mesh, FACETS, "compound")  # loads the kernels
     for group, name, mesh in particles(apollo, n, seed):
         if name not in rows:
-            rows[name] = {"group": group, **judged(mesh, seed)}
+            rows[name] = {"group": group, **evaluated(mesh, seed)}
             print(name, rows[name], flush=True)
             content = {"facets": FACETS, "seed": seed, "groups": summary(rows), "particles": rows}
             result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
@@ -62,7 +62,7 @@ def particles(apollo: str, n: int, seed: int) -> Iterator[tuple[str, str, Mesh]]
         yield "synthetic", f"synthetic-{k}", recipe.make(rng)
 
 
-def judged(mesh: Mesh, seed: int) -> dict[str, Any]:
+def evaluated(mesh: Mesh, seed: int) -> dict[str, Any]:
     """Numbers of the compound and of the convex polyhedron of one particle."""
     wanted = describe(mesh)
     start = time.process_time()

@@ -40,7 +40,7 @@ def far(one: FloatArray, two: FloatArray) -> FloatArray:
     return np.array([100 * relative_wasserstein(a, b, ones, others) for a, b in pairs])
 
 
-def judged(
+def evaluated(
     key: str,
     sample: Sample,
     table: FloatArray,
@@ -83,7 +83,7 @@ def tables_of(
     found = {"the half fitted to": np.array([far(table[b], table[a]) for a, b in chosen])}
     for key in ("the half fitted to", *keys):
         if key not in found:
-            found[key] = judged(key, sample, table, chosen, level, seed, n_draws)
+            found[key] = evaluated(key, sample, table, chosen, level, seed, n_draws)
         show_row(rows, key, found[key].mean(axis=0))
         show_row(beyond, key, 100 * (found[key][:, : len(KEYS)] > limits).mean(axis=0), digits=0)
     return rows, beyond

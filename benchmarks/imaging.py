@@ -188,7 +188,7 @@ def executor_of(jobs: int, dask: int) -> Iterator[tuple[Executor, dict[str, int]
         runner = executor._open_runner()
         submit = runner.submit
 
-        def counted(job: Any, listener: Any, lane: str = "") -> Any:
+        def counted(job: Any, listener: Any, queue: str = "") -> Any:
             moved["tasks"] += 1
             moved["bytes of tasks"] += len(pickle.dumps(job))
 
@@ -196,7 +196,7 @@ def executor_of(jobs: int, dask: int) -> Iterator[tuple[Executor, dict[str, int]
                 moved["bytes of results"] += len(pickle.dumps(event))
                 listener(event)
 
-            return submit(job, listen, lane)
+            return submit(job, listen, queue)
 
         runner.submit = counted  # type: ignore[method-assign]
     try:

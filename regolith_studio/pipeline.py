@@ -137,11 +137,11 @@ def compare_draws(
 
     Returns
     -------
-    With ``table()``, what is farthest first, and ``verdict()``, a sentence.
+    With ``table()``, what is farthest first, and ``assessment()``, a sentence.
 
     Examples
     --------
-    >>> print(rs.compare_draws(model, fits).verdict())
+    >>> print(rs.compare_draws(model, fits).assessment())
     """
     sample = Sample.of([radius_of(fit) for fit in fits])
     steps = compare_distributions(sample, model.draw(n, seed, size_range), size_range)

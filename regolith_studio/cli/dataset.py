@@ -94,7 +94,7 @@ def build(
         measure_population,
         measure_quality,
     )
-    from regolith_studio.session.outputs.coarsening import coarsening_document, remarks
+    from regolith_studio.session.outputs.coarsening import coarsening_document, notes_on
 
     choices = how.choices(preset, seed=seed, **stopping.changes)
     with usage_errors():
@@ -130,7 +130,7 @@ def build(
     if json:
         print_json({"folder": str(output)} | coarsening_document(choices.coarsening_request, built.outcomes))
     else:
-        print_errors(remarks(built.outcomes))
+        print_errors(notes_on(built.outcomes))
         count = len(loaded.particles) + len(loaded.problems)
         typer.echo(f"{len(built.dataset)} of {count} particles in the dataset {output}")
     raise typer.Exit(exit_code(loaded, len(failed)))

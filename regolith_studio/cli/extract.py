@@ -364,7 +364,7 @@ def extract(
             ]
         )
     if done.facts is not None:
-        print_errors(f"{given.path.name}: {remark}" for remark in done.facts.remarks)
+        print_errors(f"{given.path.name}: {hint_label}" for hint_label in done.facts.notes_on)
     if json:
         print_json(document)
     else:

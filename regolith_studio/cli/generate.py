@@ -159,12 +159,12 @@ def generate(
         print_json(document | {"folder": str(output)})
     else:
         typer.echo(f"{len(draws)} particles by {fitted.key}, l_max = {fitted.l_max}, in {output}")
-        if judged := getattr(source.content, "judged", ""):
-            typer.echo(judged)
+        if evaluated := getattr(source.content, "evaluated", ""):
+            typer.echo(evaluated)
         if compared is not None:
             if compared.comparable:
                 print_table(compared.table())
-            typer.echo(compared.verdict())
+            typer.echo(compared.assessment())
         if bias := document.get("rejection_bias"):
             typer.echo(
                 f"{draws.rejected} draws thrown away, which biases those kept: mean radius "

@@ -274,7 +274,7 @@ def coarsen(
     from regolith_studio.session.outputs.coarsening import (
         coarsening_document,
         error_table,
-        remarks,
+        notes_on,
         write_coarsening,
     )
     from regolith_studio.session.recipe import Outputs
@@ -296,7 +296,7 @@ def coarsen(
     else:
         if len(done) > len(failed):
             print_table(error_table(done))
-        print_errors(remarks(done))
+        print_errors(notes_on(done))
         typer.echo(
             f"{len(done) - len(failed)} of {len(done) + len(loaded.problems)} particles coarsened in {output}"
         )

@@ -325,7 +325,7 @@ def drum(
 def _simulate(
     dataset: Path, output: Path, request: "ReposeRequest", filling: Path | None, overwrite: bool, jobs: int
 ) -> "ReposeRun":
-    """Run a case, with its remarks before and after."""
+    """Run a case, with its notes before and after."""
     from dataclasses import replace
 
     from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
@@ -341,7 +341,7 @@ def _simulate(
         print_errors(notes)
     request = replace(request, overwrite=overwrite, threads=jobs or cores())
     done: ReposeRun = run_with_progress(simulate_prepared(prepared, output, request))
-    print_errors(run_remarks(done.document))
+    print_errors(run_notes(done.document))
     return done
 
 
@@ -449,9 +449,9 @@ def certificate_in_words(document: dict[str, Any]) -> str:
     """The lines of a certificate."""
     lines = [f"{document['engine']} {document['version']}"]
     for each in document["lines"]:
-        verdict = "passed" if each["passed"] else "FAILED"
+        assessment = "passed" if each["passed"] else "FAILED"
         value = "no value" if each["value"] is None else f"{each['value']:.3g} {each['unit']}".rstrip()
-        lines.append(f"{verdict}  {each['what']}: {value}")
+        lines.append(f"{assessment}  {each['what']}: {value}")
         details = [
             f"band: {each['band']}",
             *([each["note"]] if each["note"] else []),
@@ -507,7 +507,7 @@ def in_words(document: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def run_remarks(document: dict[str, Any]) -> list[str]:
+def run_notes(document: dict[str, Any]) -> list[str]:
     """Sentences about a run that its user should read."""
     return [
         *document["run"]["notes"],

@@ -19,7 +19,7 @@ STEEP = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Shadow:
+class Footprint:
     """What a particle covers of the height map: cells about its centre, and its underside and top there.
 
     ``cells``: indices relative to the cell of the centre, shape (m, 2). ``lower``, ``upper``: heights
@@ -49,16 +49,18 @@ def loose_column(prepared: PreparedCase) -> ParticleState:
     for k, (kind, matrix) in enumerate(zip(prepared.class_index, matrices, strict=True)):
         shift = generator.uniform(-0.5, 0.5, 2)
         if planes:
-            shadow = _shadow(planes[kind], prepared.shapes[kind], matrix, prepared.scales[k], shift, cell)
+            footprint = _footprint(
+                planes[kind], prepared.shapes[kind], matrix, prepared.scales[k], shift, cell
+            )
         else:
-            shadow = _shadow_of_sphere(prepared.diameters[k] / 2, shift, cell)
-        room = max(radius / cell - 1.0 - np.linalg.norm(shadow.cells, axis=1).max(), 0.0)
+            footprint = _footprint_of_sphere(prepared.diameters[k] / 2, shift, cell)
+        room = max(radius / cell - 1.0 - np.linalg.norm(footprint.cells, axis=1).max(), 0.0)
         away, angle = room * np.sqrt(generator.random(TRIALS)), generator.uniform(0.0, 2 * np.pi, TRIALS)
         centres = np.rint(away[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])).astype(np.int64)
-        rows, columns = np.moveaxis(centres[:, None, :] + shadow.cells + middle, 2, 0)
-        heights = (surface[rows, columns] - shadow.lower).max(axis=1)
+        rows, columns = np.moveaxis(centres[:, None, :] + footprint.cells + middle, 2, 0)
+        heights = (surface[rows, columns] - footprint.lower).max(axis=1)
         best = int(heights.argmin())
-        surface[rows[best], columns[best]] = heights[best] + shadow.upper
+        surface[rows[best], columns[best]] = heights[best] + footprint.upper
         places[k] = *((centres[best] + shift) * cell), heights[best]
     orientations = turns.as_quat(scalar_first=True)
     return ParticleState(places, prepared.diameters, orientations, prepared.class_index, 0.0, 0.0, "fill")
@@ -85,14 +87,14 @@ def _facet_planes(prepared: PreparedCase) -> list[list[FloatArray]]:
     return [[ConvexHull(part).equations for part in parts] for parts in prepared.part_vertices]
 
 
-def _shadow(
+def _footprint(
     parts: list[FloatArray],
     vertices: FloatArray,
     turn: FloatArray,
     scale: float,
     shift: FloatArray,
     cell: float,
-) -> Shadow:
+) -> Footprint:
     """Of a particle whose centre lies `shift` cells off the centre of a cell."""
     reach = int(np.ceil(scale * np.abs(vertices @ turn[:2].T).max() / cell)) + 2
     cells = _square(reach)
@@ -109,16 +111,16 @@ def _shadow(
         lower[covered] = np.minimum(lower, low)[covered]
         upper[covered] = np.maximum(upper, high)[covered]
     covered = lower <= upper
-    return Shadow(cells[covered], lower[covered], upper[covered])
+    return Footprint(cells[covered], lower[covered], upper[covered])
 
 
-def _shadow_of_sphere(radius: float, shift: FloatArray, cell: float) -> Shadow:
+def _footprint_of_sphere(radius: float, shift: FloatArray, cell: float) -> Footprint:
     """Of a sphere whose centre lies `shift` cells off the centre of a cell."""
     cells = _square(int(np.ceil(radius / cell)) + 2)
     away = np.maximum(cell * (np.linalg.norm(cells - shift, axis=1) - np.sqrt(0.5)), 0.0)
     covered = away < radius
     half = np.sqrt(radius**2 - away[covered] ** 2)
-    return Shadow(cells[covered], -half, half)
+    return Footprint(cells[covered], -half, half)
 
 
 def _square(reach: int) -> IntArray:

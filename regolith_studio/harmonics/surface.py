@@ -103,7 +103,7 @@ def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: in
     _refuse_negative(fit, radius)
     _refuse_negative(fit, between)
     sphere = icosphere(level)
-    lifted = np.maximum(radius + edges.shortfalls(radius, between), radius / 2)
+    lifted = np.maximum(radius + edges.chord_errors(radius, between), radius / 2)
     vertices = sphere.vertices * lifted[:, None]
     volume = enclosed_volume(fit.coefficients, fit.reference)
     factor = np.cbrt(volume / _flat_volume(vertices, sphere.faces))

@@ -39,10 +39,10 @@ class IcosphereEdges:
     spans: FloatArray
     weights: "csr_array[np.float64, tuple[int, int]]"
 
-    def shortfalls(self, radius: FloatArray, between: FloatArray) -> FloatArray:
+    def chord_errors(self, radius: FloatArray, between: FloatArray) -> FloatArray:
         """How far the flat triangles round each vertex stay inside the surface on average, shape (n,).
 
-        Over a triangle the shortfall is nearly quadratic and vanishes at the corners, so that its mean is
+        Over a triangle the chord error is nearly quadratic and vanishes at the corners, so that its mean is
         that of its values in the middles of the three edges.
 
         ``radius``, ``between``: radius of the surface at the vertices (n,) and in the middles of the edges

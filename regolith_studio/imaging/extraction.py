@@ -306,7 +306,7 @@ def voxel_diameter(n_voxels: int) -> float:
     return float((6.0 * n_voxels / np.pi) ** (1 / 3))
 
 
-def is_remark(note: str) -> bool:
+def is_hint(note: str) -> bool:
     """Whether a particle's note says what it was made of, few voxels or a mask, not what was changed."""
     return note.startswith(_OF_MASK) or (note.startswith(f"{_COARSE} ") and "voxels in diameter" in note)
 
@@ -394,8 +394,8 @@ def _weight(volume: Volume, label: int, box: Box, circle: ScanCircle | None) -> 
     """Border weight of a grain in the volume, or in the scanner's circle."""
     if circle is None:
         return border_weight(box, volume.shape)
-    shadow = (volume.array[box] == label).any(axis=2)
-    return float(1.0 / (circle.share_inside(shadow) * _shares_inside(box, volume.shape)[2]))
+    footprint = (volume.array[box] == label).any(axis=2)
+    return float(1.0 / (circle.share_inside(footprint) * _shares_inside(box, volume.shape)[2]))
 
 
 def _particle_of(

@@ -54,7 +54,7 @@ along their long edge widen the smoothing, so that 0.9 makes areas 1 to 2 % too 
 
 Floats = NDArray[np.float32]
 
-_without_specks: Any = cc3d.dust
+_without_small_components: Any = cc3d.dust
 _MASK_MARGIN = 4
 """Voxels around the mask into which the surface may move."""
 _MASK_STEPS = 8
@@ -99,7 +99,7 @@ def grey_mesh(
     shares = grain_shares(values, others, inside, outside, cubic_voxels)
     if isinstance(shares, str):
         return shares
-    rim, told = _rim(shares.share, others, inside, outside)
+    rim, reliable = _rim(shares.share, others, inside, outside)
     rim[shares.full] = 1.0
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _MAX_VOLUME_RATIO < volume / np.count_nonzero(body) < _MAX_VOLUME_RATIO:
@@ -116,7 +116,7 @@ def grey_mesh(
         twicing = _TWICING if cubic_voxels else _TWICING_OF_UNEQUAL
         how = RefinementSettings(_STEPS, iterations, wider, twicing)
         blur = _blur(rim, shares.noise, mesh, cubic_voxels)
-        fit = refined_to_scan(mesh, rim, told, blur, how)
+        fit = refined_to_scan(mesh, rim, reliable, blur, how)
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
     return GreySurface(with_volume(mesh, volume), scan)
 
@@ -126,20 +126,20 @@ def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> t
 
     And where it tells the surface: not deep inside, not far outside, not where other grains touch.
     """
-    rim, told = share.copy(), (inside <= RIM) & (outside <= RIM)
+    rim, reliable = share.copy(), (inside <= RIM) & (outside <= RIM)
     rim[inside > RIM] = 1.0
     body = inside > 0.0
     strange = (share >= 0.5) & (outside > _CRUMB_DISTANCE)
-    others = others | np.asarray(_without_specks(strange.view(np.uint8), _CRUMB_VOXELS) > 0)
+    others = others | np.asarray(_without_small_components(strange.view(np.uint8), _CRUMB_VOXELS) > 0)
     if others.any():
         away = depth(~others)
         touched = body & (away <= CONTACT)
         rim[~body & (away == outside)] *= 0.5
         rim[~body & (away < outside)] = 0.0
         if touched.any():
-            told &= depth(~touched) > RIM
+            reliable &= depth(~touched) > RIM
     rim[outside > RIM] = 0.0
-    return rim, told
+    return rim, reliable
 
 
 def _blur(rim: Floats, noise: float, mesh: Mesh, cubic_voxels: bool) -> FloatArray:

@@ -201,16 +201,16 @@ class ScanCircle:
         normals, offsets = hull.equations[:, :2], -hull.equations[:, 2]
         return cls(normals, offsets, grid[(grid @ normals.T <= offsets).all(axis=1)])
 
-    def share_inside(self, shadow: BoolArray) -> float:
+    def share_inside(self, footprint: BoolArray) -> float:
         """Of the places of a grain in the circle, the share where it keeps clear of the edge.
 
         The grain lies clear of the edge if it does in each half-plane, moved inwards by its extent along the
         normal: the erosion of the circle, of area pi R^2 - R P + A for a convex grain of perimeter P and area
         A (Miles 1974).
 
-        ``shadow``: pixels that have a voxel of the grain, shape (bx, by).
+        ``footprint``: pixels that have a voxel of the grain, shape (bx, by).
         """
-        points = _corners(shadow, 1.0) - (np.array(shadow.shape) - 1.0) / 2.0
+        points = _corners(footprint, 1.0) - (np.array(footprint.shape) - 1.0) / 2.0
         extent = (points @ self.normals.T).max(axis=0)
         clear = (self.places @ self.normals.T <= self.offsets - extent).all(axis=1)
         return max(float(clear.mean()), 1.0 / len(self.places))

@@ -314,7 +314,7 @@ def _local_mean(values: Floats, known: BoolArray) -> Floats:
 
 
 def _usual(values: Floats, sample: Floats) -> BoolArray:
-    """Values within the range of nearly all of the sample: no crumbs of other grains."""
+    """Values within the range of nearly all of the sample: no debris of other grains."""
     middle = np.median(sample)
     spread = 1.4826 * np.median(np.abs(sample - middle))
     return np.asarray(np.abs(values - middle) <= max(4.0 * float(spread), 1e-6 * abs(float(middle)), 1e-12))

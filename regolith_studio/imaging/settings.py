@@ -147,7 +147,7 @@ class ThresholdSettings:
 class CleaningSettings:
     """Morphology of the mask, in voxels.
 
-    - ``opening``: removes what is thinner than about twice this: specks and thin bridges between grains.
+    - ``opening``: removes what is thinner than about twice this: small components, thin bridges.
     - ``closing``: closes cracks and gaps thinner than about twice this.
     - ``fill_pores``: fill pores inside grains that have no way out.
     - ``min_voxels``: drop what has fewer voxels, before and after grains are split.

@@ -222,15 +222,15 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, N
         steps = coarsening_steps(_target(mesh), request.n_facets, **common)
     else:
         steps = fewest_facets(_target(mesh), request.largest_error, **common)
-    tried, recent = "", deque[CoarseningProgress](maxlen=N_RECENT)
+    trials, recent = "", deque[CoarseningProgress](maxlen=N_RECENT)
     while True:
         try:
             step = next(steps)
         except StopIteration as end:
             return end.value
         if isinstance(step, Trial):
-            tried = f"{step.n_facets} facets: {100 * step.largest_error:.2g} %"
+            trials = f"{step.n_facets} facets: {100 * step.largest_error:.2g} %"
             continue
         recent.append(step)
         yield Partial(replace(step, recent=tuple(recent)))
-        yield Progress(step.step, step.steps, tried)
+        yield Progress(step.step, step.steps, trials)

@@ -53,7 +53,7 @@ class Failed:
 
 @dataclass(frozen=True)
 class Stopped:
-    """The job was cancelled, or replaced by a newer one of its lane; `reason` if not by the user."""
+    """The job was cancelled, or replaced by a newer one of its queue; `reason` if not by the user."""
 
     reason: str = ""
 

@@ -92,7 +92,7 @@ class SegmentationSummary:
     n_grains: int
     n_small: int
     n_not_finite: int
-    remarks: tuple[str, ...] = ()
+    notes_on: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -275,11 +275,11 @@ def _handed_over(
 
 
 def _summary_of(segmentation: Segmentation, threshold: ThresholdSettings) -> SegmentationSummary:
-    remarks = [] if segmentation.outside is None else [segmentation.outside.remark]
+    notes_on = [] if segmentation.outside is None else [segmentation.outside.hint_label]
     hidden = hidden_class(segmentation.seen, segmentation.level, threshold)
     if hidden is not None:
         first, second, gap = hidden
-        remarks.append(
+        notes_on.append(
             f"The voxels that are no grain at {segmentation.level:g} are of two kinds, about {first:g} and "
             f"{second:g}: if the latter are grains, take --threshold {gap:g} or multi-otsu."
         )
@@ -289,7 +289,7 @@ def _summary_of(segmentation: Segmentation, threshold: ThresholdSettings) -> Seg
         segmentation.n_grains,
         segmentation.n_small,
         segmentation.n_not_finite,
-        tuple(remarks),
+        tuple(notes_on),
     )
 
 

@@ -69,13 +69,13 @@ class AnnealingStep:
 class AnnealingLesson:
     """An annealing to be looked through, and what the exact method finds for the same request.
 
-    - ``imitated``: the surface that is imitated, in the particle's frame.
+    - ``approximated``: the surface that is imitated, in the particle's frame.
     - ``centre``: its centroid, shape (3,).
     - ``scale``: length that one unit of the unit-volume particle stands for.
     - ``exact``: ``None`` until it is known.
     """
 
-    imitated: Mesh
+    approximated: Mesh
     centre: FloatArray
     scale: float
     n_facets: int
@@ -135,12 +135,12 @@ def _trace_steps(target: Target, raw: list[MethodStep]) -> tuple[AnnealingStep, 
         proposal = _polyhedron(target, proposed) if proposed is not None else None
         i = move.plane
         after = proposal if move.accepted and proposal is not None else now
-        judged = move.proposed if move.accepted and move.proposed is not None else move.before
+        evaluated = move.proposed if move.accepted and move.proposed is not None else move.before
         steps.append(
             AnnealingStep(
                 number=step.step,
                 polyhedron=after,
-                evaluation=judged,
+                evaluation=evaluated,
                 move=move,
                 before=now,
                 proposal=proposal,

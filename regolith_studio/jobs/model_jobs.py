@@ -123,7 +123,7 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
 
 
 def make_card(sample: Sample, name: str, label: str, origin: str) -> Steps:
-    """The card of a sample with its hull field, judged against the sample; returns a ``MaterialCard``."""
+    """The card of a sample with its hull field, evaluated against the sample; returns a ``MaterialCard``."""
     yield from compile_first("model")
     yield Started(N_("Making a material card"))
     return MaterialCard.of(sample, name, label, origin)

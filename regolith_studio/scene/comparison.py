@@ -25,7 +25,7 @@ VEIL = 0.28
 def show_other(
     plotter: Any, other: SceneShape | None, overlay: bool, surroundings: ThemeColors = palette.LIGHT
 ) -> None:
-    """The body that is compared with, as a veil or solid; or none."""
+    """The body that is compared with, as a transparent overlay or solid; or none."""
     show_shape(plotter, other, surroundings, OTHER, VEIL if overlay else 1.0)
 
 
@@ -42,7 +42,7 @@ def show_cuts(
     - ``own``, ``other``: names of the bodies, empty for none.
     - ``cuts``: by the name of the body.
     - ``colours``: of the outlines.
-    - ``overlay``: whether the other body is a veil over the own one.
+    - ``overlay``: whether the other body is a transparent overlay over the own one.
     """
     for name, layer, opacity in ((own, "", 1.0), (other, OTHER, VEIL if overlay else 1.0)):
         cut = cuts.get(name) if name else None
@@ -56,7 +56,7 @@ def arrange(
 ) -> None:
     """Clip everything that is shown by the line of the wipe and by the plane of the section.
 
-    With overlay and wipe together the veil begins at the line.
+    With overlay and wipe together the overlay begins at the line.
     """
     cutting = [section.as_clip()] if section is not None else []
     own = [divider.left] if wipe and not overlay else []

@@ -120,7 +120,7 @@ class Choices(ReadingSettings, CoarseningSettings, FitSurfaceSettings, FitOption
 
 
 class Kind(StrEnum):
-    """Kinds of results; each is a lane of its own, in which the newest request wins."""
+    """Kinds of results; each is a queue of its own, in which the newest request wins."""
 
     FIT = "fit"
     SURFACE = "surface"

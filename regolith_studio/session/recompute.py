@@ -79,13 +79,13 @@ class LiveResults:
         self._fits: dict[tuple[Any, ...], HarmonicFit] = {}
         self._particle_descriptors: dict[tuple[Any, ...], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
-        self._tried: dict[tuple[Any, ...], dict[int, float]] = {}
+        self._trials: dict[tuple[Any, ...], dict[int, float]] = {}
         self._has_shown = False
 
     def clear_cache(self) -> None:
         """Drop cached results, because ids refer to other particles now."""
         self._fits.clear()
-        self._tried.clear()
+        self._trials.clear()
         self._particle_descriptors.clear()
 
     def follow(self, before: Choices | None, after: Choices) -> None:
@@ -97,7 +97,7 @@ class LiveResults:
         same = before is not None and before.selected == after.selected
         for request in requests:
             if not (same and self._may_finish(request.kind)):
-                self._board.stop_lane(request.kind)
+                self._board.stop_queue(request.kind)
         self._due = {request.kind for request in requests} | (self._due if after.selected else set())
         results = self._session.results
         for kind, made in ((Kind.FIT, results.fit), (Kind.SURFACE, results.surface)):
@@ -109,7 +109,7 @@ class LiveResults:
         fit = self._fits.get(_key(Kind.FIT, choices))
         if fit is None:
             return
-        self._board.stop_lane(Kind.FIT)
+        self._board.stop_queue(Kind.FIT)
         self._due.discard(Kind.FIT)
         if fit is not self._session.results.fit:
             self._session.update("fit", fit=fit)
@@ -122,7 +122,7 @@ class LiveResults:
 
     def _clear(self, *kinds: Kind) -> None:
         for kind in kinds:
-            self._board.stop_lane(kind)
+            self._board.stop_queue(kind)
             self._session.update(kind.value, failures=self._failures_without(kind), **_EMPTY[kind])
 
     def _failures_without(self, kind: Kind) -> Mapping[str, str]:
@@ -241,7 +241,7 @@ class LiveResults:
         self._session.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
         self._has_shown = self._has_shown or step.polyhedron is not None
         if self._has_shown and Kind.COARSENING in self._due:
-            self._board.stop_lane(Kind.COARSENING)
+            self._board.stop_queue(Kind.COARSENING)
             self._advance()
 
     def _keep_coarsened(self, done: "CoarseningResult") -> None:
@@ -257,12 +257,12 @@ class LiveResults:
         if choices.stop_at == "error" or self._board.is_running(Kind.SURFACE):
             return None
         others = dataclasses.replace(choices, stop_at="facets", n_facets=FACETS_LIMITS[0])
-        tried = self._tried.setdefault(_key(Kind.COARSENING, others), {})
-        tried[done.n_facets_asked] = done.loss
+        trials = self._trials.setdefault(_key(Kind.COARSENING, others), {})
+        trials[done.n_facets_asked] = done.loss
         return next(
             (
                 each
-                for each in sorted(tried.items())
+                for each in sorted(trials.items())
                 if each[0] < done.n_facets_asked and each[1] <= done.loss
             ),
             None,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import distribution, zingg_class
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.extraction import is_remark
+from regolith_studio.imaging.extraction import is_hint
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.model_jobs import is_origin
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
@@ -45,7 +45,7 @@ def health_word(entry: ParticleEntry) -> str:
     if entry.health.problems:
         return "doubtful"
     notes = [note for note in entry.particle.notes if not is_origin(note)]
-    if all(is_remark(note) for note in notes):
+    if all(is_hint(note) for note in notes):
         return "coarse" if notes else "sound"
     return "repaired"
 

@@ -245,7 +245,7 @@ class Session:
 
     def run(
         self,
-        lane: str,
+        queue: str,
         title: str,
         job: Job,
         finished: Callable[[Any], None],
@@ -256,10 +256,10 @@ class Session:
         repeats: bool = False,
         after_running: bool = False,
     ) -> int:
-        """Run any job in the background, the newest of its lane; returns the task's id.
+        """Run any job in the background, the newest of its queue; returns the task's id.
 
         - ``finished``, ``partial``, ``failed``, ``stopped``: called in this thread while no newer job has
-          taken the lane; without `failed`, a failure is emitted as ``events.failed``.
+          taken the queue; without `failed`, a failure is emitted as ``events.failed``.
         - ``repeats``, ``after_running``: see :meth:`TaskBoard.start
           <regolith_studio.session.tasks.TaskBoard.start>`.
         """
@@ -269,11 +269,11 @@ class Session:
             failed or self.failure_reporter(title),
             stopped or (lambda: None),
         )
-        return self._board.start(lane, title, job, reactions, repeats=repeats, after_running=after_running)
+        return self._board.start(queue, title, job, reactions, repeats=repeats, after_running=after_running)
 
-    def stop(self, lane: str) -> None:
-        """Stop what runs in a lane, silently."""
-        self._board.stop_lane(lane)
+    def stop(self, queue: str) -> None:
+        """Stop what runs in a queue, silently."""
+        self._board.stop_queue(queue)
 
     def cancel(self, task_id: int) -> None:
         """Stop one task; harmless if it has ended."""
@@ -286,7 +286,7 @@ class Session:
     def close(self) -> None:
         """Stop everything and wait for it."""
         for task in self.tasks:
-            self._board.stop_lane(task.lane)
+            self._board.stop_queue(task.queue)
         self._runner.close()
 
     # --- for the parts of the session ----------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The running tasks: numbered, listed, cancellable; each lane holds the newest one."""
+"""The running tasks: numbered, listed, cancellable; each queue holds the newest one."""
 
 import dataclasses
 from collections.abc import Callable
@@ -20,7 +20,7 @@ class Task:
     """
 
     id: int
-    lane: str
+    queue: str
     title: str
     done: int = 0
     total: int = 0
@@ -33,7 +33,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Reactions:
-    """Callbacks for the events of a task; called only while it is the newest of its lane."""
+    """Callbacks for the events of a task; called only while it is the newest of its queue."""
 
     finished: Callable[[Any], None]
     partial: Callable[[Any], None] = lambda _value: None
@@ -57,16 +57,16 @@ class TaskBoard:
 
     @property
     def running(self) -> tuple[Task, ...]:
-        """The newest task of each lane that has not ended, oldest first."""
+        """The newest task of each queue that has not ended, oldest first."""
         return tuple(self._tasks.values())
 
-    def is_running(self, lane: str) -> bool:
-        """Whether `lane` has a task that has not ended."""
-        return self._newest.get(lane, 0) in self._tasks
+    def is_running(self, queue: str) -> bool:
+        """Whether `queue` has a task that has not ended."""
+        return self._newest.get(queue, 0) in self._tasks
 
     def start(
         self,
-        lane: str,
+        queue: str,
         title: str,
         job: Job,
         reactions: Reactions,
@@ -74,32 +74,32 @@ class TaskBoard:
         repeats: bool = False,
         after_running: bool = False,
     ) -> int:
-        """Run `job`; the previous job of `lane` is cancelled and its events dropped. Returns its id.
+        """Run `job`; the previous job of `queue` is cancelled and its events dropped. Returns its id.
 
         - ``repeats``: see :class:`Task`.
-        - ``after_running``: let the running job of `lane` end and be shown first, and drop one that waits:
+        - ``after_running``: let the running job of `queue` end and be shown first, and drop one that waits:
           for a control that is dragged, where nothing would be seen if each new value stopped the job of the
           last.
         """
-        if after_running and self.is_running(lane):
-            self._waiting[lane] = partial(self.start, lane, title, job, reactions, repeats=repeats)
-            return self._newest[lane]
-        self.stop_lane(lane)
+        if after_running and self.is_running(queue):
+            self._waiting[queue] = partial(self.start, queue, title, job, reactions, repeats=repeats)
+            return self._newest[queue]
+        self.stop_queue(queue)
         self._number += 1
-        number = self._newest[lane] = self._number
-        self._tasks[number] = Task(number, lane, title, repeats=repeats)
+        number = self._newest[queue] = self._number
+        self._tasks[number] = Task(number, queue, title, repeats=repeats)
         self._changed()
-        handle = self._runner.submit(job, lambda event: self._on_event(number, event, reactions), lane)
+        handle = self._runner.submit(job, lambda event: self._on_event(number, event, reactions), queue)
         if number in self._tasks:
             self._handles[number] = handle
             if isinstance(handle, Pausable):
                 self._update(number, pausable=True)
         return number
 
-    def stop_lane(self, lane: str) -> None:
-        """Cancel the job of `lane` silently: its reactions are not called any more."""
-        self._waiting.pop(lane, None)
-        number = self._newest.pop(lane, 0)
+    def stop_queue(self, queue: str) -> None:
+        """Cancel the job of `queue` silently: its reactions are not called any more."""
+        self._waiting.pop(queue, None)
+        number = self._newest.pop(queue, 0)
         if handle := self._handles.get(number):
             handle.cancel()
         if self._remove(number):
@@ -148,7 +148,7 @@ class TaskBoard:
         self._changed()
 
     def _end(self, number: int, event: Finished | Failed | Stopped, reactions: Reactions) -> None:
-        lane = self._tasks[number].lane
+        queue = self._tasks[number].queue
         self._remove(number)
         try:
             match event:
@@ -159,6 +159,6 @@ class TaskBoard:
                 case Stopped():
                     reactions.stopped()
         finally:
-            if start := self._waiting.pop(lane, None):
+            if start := self._waiting.pop(queue, None):
                 start()
         self._changed()

@@ -64,7 +64,7 @@ class MaterialCard(BaseModel):
     hull_field: dict[str, Any] | None = Field(
         default=None, description="Numbers of the hull field of the sample; none for published statistics."
     )
-    judgement: dict[str, float] | None = Field(
+    evaluation: dict[str, float] | None = Field(
         default=None,
         description="Wasserstein distance of draws of the hull field to the sample, percent of the mean.",
     )
@@ -80,26 +80,26 @@ class MaterialCard(BaseModel):
         return LOG_FIELD if self.hull_field is None else HULL_FIELD
 
     @property
-    def judged(self) -> str:
-        """A sentence with the judgement, or on what a spectrum alone lacks; empty for other hull fields.
+    def evaluated(self) -> str:
+        """A sentence with the evaluation, or on what a spectrum alone lacks; empty for other hull fields.
 
         The numbers on spectra are those of ``benchmarks/cards.py``.
         """
         if self.hull_field is None:
             return SPECTRUM_ALONE
-        if self.judgement is None:
+        if self.evaluation is None:
             return ""
         return Message(
             N_(
                 "Draws differ from the sample of the card by {equivalent_radius} % in r_eq, {aspect_ratio} % "
                 "in AR, {sphericity} % in S and {convexity} % in V/CH (Wasserstein distance over the mean)."
             ),
-            **{key: Number(far, ".2g") for key, far in self.judgement.items()},
+            **{key: Number(far, ".2g") for key, far in self.evaluation.items()},
         )
 
     @classmethod
     def of(cls, sample: Sample, name: str, label: str, origin: str, l_max: int | None = None) -> Self:
-        """The card of a sample: its statistics rounded to three digits, its hull field, and their judgement.
+        """The card of a sample: its statistics rounded to three digits, its hull field, and their evaluation.
 
         Samples below l = 3 have no hull field.
 
@@ -109,9 +109,9 @@ class MaterialCard(BaseModel):
         settings = LogFieldSettings(degree, "pooled", "log_normal", size_dependent=False)
         field = LogFieldModel().fit(sample, settings)
         radii = sample.star_shaped().equivalent_radii
-        hull, judgement = None, None
+        hull, evaluation = None, None
         if degree >= DEGREES[0]:
-            hull, judgement = _evaluated_hull_field(sample.truncated(degree))
+            hull, evaluation = _evaluated_hull_field(sample.truncated(degree))
         try:
             return cls(
                 name=name,
@@ -125,7 +125,7 @@ class MaterialCard(BaseModel):
                     _rounded(float(value)) for value in np.sqrt(field.spectrum[1:] / (4 * np.pi))
                 ),
                 hull_field=hull,
-                judgement=judgement,
+                evaluation=evaluation,
             )
         except ValidationError as error:
             raise InputError(

@@ -125,7 +125,8 @@ def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) ->
     if not np.isfinite(radius).all():
         raise GeometryError("The logarithm of a radius is too large to be a size.")
     flat = Mesh(
-        sphere.vertices * (radius + icosphere_edges(level).shortfalls(radius, between))[:, None], sphere.faces
+        sphere.vertices * (radius + icosphere_edges(level).chord_errors(radius, between))[:, None],
+        sphere.faces,
     )
     grid = sphere_grid(EXPONENTIAL_DEGREE * draws.l_max + 1, draws.l_max)
     volume = expanded_volumes(drawn.values[None], grid, exponential=True)[0]

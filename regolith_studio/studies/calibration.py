@@ -184,11 +184,11 @@ def calibrate(
         If scikit-learn is not installed.
     """
     points = _prior_points(parameters)
-    (places, ranges), (tried, _) = (_coordinates(each, parameters) for each in (points, runs.values))
+    (places, ranges), (trials, _) = (_coordinates(each, parameters) for each in (points, runs.values))
     log_likelihood, misfit, gains = np.zeros(len(points)), np.zeros(len(points)), []
     moments = []
     for k, target in enumerate(targets):
-        models = _fit(target, tried, ranges, runs.results[:, k], runs.errors[:, k])
+        models = _fit(target, trials, ranges, runs.results[:, k], runs.errors[:, k])
         means, deviations = _predict(models, places, target)
         spread = np.hypot(deviations, target.error)
         density = norm.logpdf(target.value, means, spread)
@@ -217,7 +217,7 @@ def calibrate(
         best_index=int(np.argmax(np.where(inside, weights, -1.0))),
         misfit=float(np.sqrt(misfit.min())),
         next_values=points[
-            np.argmax(np.where(_near(places / ranges, tried[failed] / ranges), -np.inf, gain))
+            np.argmax(np.where(_near(places / ranges, trials[failed] / ranges), -np.inf, gain))
         ],
     )
 

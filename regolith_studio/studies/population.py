@@ -288,7 +288,7 @@ def population_study(
         for key in chosen:
             options = (settings or {}).get(key) or default_settings(key, sample, l_max)
             rounds[key] += yield from half.rounds(key, options, split, (drawn, n_repeats, seed))
-        judged = tuple(_evaluation_of(key, rounds[key]) for key in chosen)
+        evaluated = tuple(_evaluation_of(key, rounds[key]) for key in chosen)
         left_out = len(sample) - len(keep)
         study = PopulationStudy(
             tuple(keys),
@@ -298,7 +298,7 @@ def population_study(
             cut_degree,
             cut,
             floor,
-            judged,
+            evaluated,
             drawn,
             n_repeats,
             seed,

@@ -219,7 +219,7 @@ class DistributionComparison:
         ranked = tuple(sorted(rows, key=lambda row: -max(row[-2:])))
         return Table("Drawn against measured particles", columns, ranked)
 
-    def verdict(self) -> Message:
+    def assessment(self) -> Message:
         """Whether the draws differ from the sample by more than sampling noise, and what would be nearer."""
         if not self.comparable:
             few = N_("Fewer than {least} drawn or measured particles of these sizes: they are not compared.")

@@ -29,7 +29,7 @@ from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import number_text, tr, translate
-from regolith_studio.ui.widgets.labels import ElidedLabel, remark
+from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label
 from regolith_studio.ui.widgets.toast import Toast
 
 SHOW_DELAY = 250
@@ -165,7 +165,7 @@ class _Row:
 
     def __init__(self, number: int) -> None:
         self.clock = _Clock()
-        self.title, self.bar, self.left = QLabel(), QProgressBar(), remark()
+        self.title, self.bar, self.left = QLabel(), QProgressBar(), hint_label()
         self.bar.setAccessibleName(tr("Progress"))
         self.bar.setFixedHeight(14)
         self.pause, self.stop = QPushButton(tr("Pause")), QPushButton(tr("Stop"))
@@ -198,7 +198,7 @@ class TaskListPanel(QWidget):
         super().__init__()
         self.setObjectName("task_list")
         self._rows: dict[int, _Row] = {}
-        self.idle = remark(tr("Nothing is running."))
+        self.idle = hint_label(tr("Nothing is running."))
         self._grid = QGridLayout()
         self._grid.setColumnStretch(0, 2)
         self._grid.setColumnStretch(1, 1)

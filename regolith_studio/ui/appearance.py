@@ -17,13 +17,13 @@ from PySide6.QtWidgets import (
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL, apply_letters, choose_letters, choose_theme
+from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL, apply_font_size, choose_font_size, choose_theme
 from regolith_studio.ui.translation import LANGUAGES, SETTING, SYSTEM, tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 
-LETTERS = "letters"
-"""In the preferences of the window: size of letters in percent."""
+FONT_SIZE = "font_size"
+"""In the preferences of the window: font size in percent."""
 THEMES = {SYSTEM: N_("As the system"), "light": N_("Light"), "dark": N_("Dark")}
 
 
@@ -39,36 +39,36 @@ class PreferencesDialog(QDialog):
         self.setMinimumWidth(420)
         self.language = ChoiceBox("preferences_language", tr("Language"), LANGUAGES)
         self.theme = ChoiceBox("preferences_theme", tr("Theme"), THEMES)
-        self.letters = QSpinBox()
-        self.letters.setObjectName("preferences_letters")
-        self.letters.setAccessibleName(tr("Size of letters"))
-        self.letters.setRange(int(SMALLEST), int(LARGEST))
-        self.letters.setSingleStep(10)
-        self.letters.setSuffix(" %")
-        self.letters.setKeyboardTracking(False)
-        self.note = remark(tr("The language takes effect when the program starts again."))
+        self.font_size = QSpinBox()
+        self.font_size.setObjectName("preferences_letters")
+        self.font_size.setAccessibleName(tr("Size of letters"))
+        self.font_size.setRange(int(SMALLEST), int(LARGEST))
+        self.font_size.setSingleStep(10)
+        self.font_size.setSuffix(" %")
+        self.font_size.setKeyboardTracking(False)
+        self.note = hint_label(tr("The language takes effect when the program starts again."))
         self._arrange()
         self.setValue(kept)
         self._begun = self.language.value()
         self.language.activated.connect(self._change_language)
         self.theme.activated.connect(lambda _: self.valueChanged.emit({"theme": self.theme.value()}))
-        self.letters.valueChanged.connect(lambda percent: self.valueChanged.emit({LETTERS: percent}))
+        self.font_size.valueChanged.connect(lambda percent: self.valueChanged.emit({FONT_SIZE: percent}))
 
     def value(self) -> dict[str, Any]:
         """All of it."""
         return {
             SETTING: self.language.value(),
             "theme": self.theme.value(),
-            LETTERS: self.letters.value(),
+            FONT_SIZE: self.font_size.value(),
         }
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show these settings, the usual ones where they are missing or not known; announces nothing."""
         for box, name, known in ((self.language, SETTING, LANGUAGES), (self.theme, "theme", THEMES)):
             box.setValue(value[name] if value.get(name) in known else SYSTEM)
-        percent = value.get(LETTERS)
-        with QSignalBlocker(self.letters):
-            self.letters.setValue(int(percent) if isinstance(percent, int | float) else int(USUAL))
+        percent = value.get(FONT_SIZE)
+        with QSignalBlocker(self.font_size):
+            self.font_size.setValue(int(percent) if isinstance(percent, int | float) else int(USUAL))
 
     def _change_language(self) -> None:
         self.note.setVisible(self.language.value() != self._begun)
@@ -79,7 +79,7 @@ class PreferencesDialog(QDialog):
         form.addRow(tr("Language"), self.language)
         form.addRow("", self.note)
         form.addRow(tr("Theme"), self.theme)
-        form.addRow(tr("Size of letters"), self.letters)
+        form.addRow(tr("Size of letters"), self.font_size)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)
@@ -92,7 +92,7 @@ class Appearance(QObject):
     """Applies the saved appearance; the font size is set before other widgets are made.
 
     - ``preferences``: where it is kept.
-    - ``apply``: called when theme or letters have changed.
+    - ``apply``: called when theme or font size have changed.
     - ``window``: parent of the dialog.
     """
 
@@ -102,7 +102,7 @@ class Appearance(QObject):
         self.focus = KeyboardFocus(self)
         self.undo_keys = UndoKeys(self)
         self._take()
-        apply_letters(cast(QApplication, QApplication.instance()))
+        apply_font_size(cast(QApplication, QApplication.instance()))
 
     def ask(self) -> None:
         """Show the dialog."""
@@ -112,7 +112,7 @@ class Appearance(QObject):
         dialog.open()
 
     def choose(self, **changes: object) -> None:
-        """Keep settings by their names; another theme and other letters are seen at once."""
+        """Keep settings by their names; another theme and font size are seen at once."""
         before = self._seen()
         self._preferences.window = self._preferences.window | changes
         self._preferences.save()
@@ -121,8 +121,8 @@ class Appearance(QObject):
             self._apply()
 
     def _seen(self) -> tuple[object, object]:
-        return self._preferences.window.get("theme", "system"), self._preferences.window.get(LETTERS)
+        return self._preferences.window.get("theme", "system"), self._preferences.window.get(FONT_SIZE)
 
     def _take(self) -> None:
         choose_theme(str(self._preferences.window.get("theme", "system")))
-        choose_letters(self._preferences.window.get(LETTERS))
+        choose_font_size(self._preferences.window.get(FONT_SIZE))

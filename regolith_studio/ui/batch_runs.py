@@ -31,7 +31,7 @@ class DialogRuns(QObject, Generic[Dialog]):
     """One run at a time; its dialog can be closed and opened again while it runs.
 
     - ``session``: whose particles and choices are taken, and who runs it.
-    - ``preferences``: what was asked for last, under the name of the lane.
+    - ``preferences``: what was asked for last, under the name of the queue.
     - ``toast``: says how it ended where the dialog is closed.
     - ``window``: parent of the dialog.
     """

@@ -80,12 +80,12 @@ class Bindings(QObject):
         - ``keeps_particles``: whether `action` keeps references to particles; :meth:`refresh_hidden` calls
           it while the page is hidden.
         """
-        beat = self._slow if slow else self._fast
-        beat.register(action)
+        throttle = self._slow if slow else self._fast
+        throttle.register(action)
         if keeps_particles:
-            self._holders.append(partial(beat.run_now, action))
+            self._holders.append(partial(throttle.run_now, action))
         for event in events.split():
-            self._listen(event, lambda: beat.add(action), fields)
+            self._listen(event, lambda: throttle.add(action), fields)
         action()
 
     @property
@@ -162,7 +162,7 @@ class Throttle(QObject):
         self._order.setdefault(action, len(self._order))
 
     def add(self, action: Callable[[], None]) -> None:
-        """Call `action` at its next beat."""
+        """Call `action` at its next refresh."""
         if action not in self._due:
             begin = self._last.get(action, 0.0) if self._at_once else time.monotonic()
             self._due[action] = begin + self._seconds

@@ -96,7 +96,7 @@ class PageContext:
     - ``session``: particles, choices, results, events; see :mod:`regolith_studio.session`.
     - ``bindings``: the page's own: what it refreshes is refreshed while the page is seen, and at its next
       visit if something has changed meanwhile.
-    - ``preferences``: what is remembered between sittings; see :meth:`recall`.
+    - ``preferences``: what is remembered from one start to the next; see :meth:`recall`.
     - ``toast``: ``note(sentence)`` and ``problem(sentence, details)``.
     - ``commands``: opening, saving and exporting, with their dialogs.
     - ``views``: backend of three-dimensional views, for :func:`regolith_studio.ui.views.factory.make_view`.
@@ -120,7 +120,7 @@ class PageContext:
         partial: Callable[[Any], None] | None = None,
         failed: Callable[[Failed], None] | None = None,
         stopped: Callable[[], None] | None = None,
-        lane: str = "",
+        queue: str = "",
         *,
         repeats: bool = False,
         after_running: bool = False,
@@ -130,15 +130,15 @@ class PageContext:
         - ``title``: on screen.
         - ``job``: a generator function with its arguments; see :mod:`regolith_studio.jobs.events`.
         - ``finished``, ``partial``, ``failed``, ``stopped``: called in the thread of the window, and only
-          while no newer job has taken the lane. A failure that is not taken care of becomes a toast.
-        - ``lane``: jobs of one lane of one page replace each other.
+          while no newer job has taken the queue. A failure that is not taken care of becomes a toast.
+        - ``queue``: jobs of one queue of one page replace each other.
         - ``repeats``: the job starts by itself when the page is opened again: closing the window does not
           ask about it.
-        - ``after_running``: let the running job of the lane end and be shown first: for controls that are
+        - ``after_running``: let the running job of the queue end and be shown first: for controls that are
           dragged.
         """
         return self.session.run(
-            f"{self.key}:{lane}",
+            f"{self.key}:{queue}",
             title,
             job,
             finished,
@@ -149,16 +149,16 @@ class PageContext:
             after_running=after_running,
         )
 
-    def stop(self, lane: str = "") -> None:
-        """Stop what runs in a lane of this page, silently: its reactions are not called any more."""
-        self.session.stop(f"{self.key}:{lane}")
+    def stop(self, queue: str = "") -> None:
+        """Stop what runs in a queue of this page, silently: its reactions are not called any more."""
+        self.session.stop(f"{self.key}:{queue}")
 
     def recall(self, name: str, default: Any = None) -> Any:
         """What was remembered under this name by this page."""
         return self.preferences.window.get(f"page.{self.key}", {}).get(name, default)
 
     def remember(self, name: str, value: Any) -> None:
-        """Remember plain JSON for the next sitting; written when the window closes."""
+        """Remember plain JSON for the next start; written when the window closes."""
         kept = self.preferences.window.get(f"page.{self.key}", {}) | {name: value}
         self.preferences.window = self.preferences.window | {f"page.{self.key}": kept}
 

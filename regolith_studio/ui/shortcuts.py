@@ -25,7 +25,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import heading, hint_label
 
 SHORTCUTS = "shortcuts"
 """In the preferences of the window: keys by the name of the command, where they are not the usual ones."""
@@ -180,7 +180,7 @@ class ShortcutsDialog(QDialog):
         ):
             button.setObjectName(f"shortcuts_{name}")
             button.setAutoDefault(False)
-        self.sentence = remark(role="warning")
+        self.sentence = hint_label(role="warning")
         self._arrange()
         self.search.textChanged.connect(lambda _: self._fill())
         self.table.itemSelectionChanged.connect(self._show_chosen)

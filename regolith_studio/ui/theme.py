@@ -22,7 +22,7 @@ class Theme:
     - ``dark``: whether letters are lighter than the ground.
     - ``window``, ``base``, ``raised``, ``border``: grounds of the window, of lists and plots, of buttons;
       lines between them.
-    - ``text``, ``muted``, ``accent``, ``selected``: letters, side remarks, what can be used, what is
+    - ``text``, ``muted``, ``accent``, ``selected``: letters, hints, what can be used, what is
       selected in a list.
     - ``particle``, ``fit``, ``polyhedron``: the same three things in every plot and title.
     - ``good``, ``doubtful``, ``bad``: health of a mesh.
@@ -89,13 +89,13 @@ THEMES = {"light": LIGHT, "dark": DARK}
 STYLE = "fusion"
 
 SMALLEST, USUAL, LARGEST = 80.0, 100.0, 200.0
-"""Sizes of letters in percent."""
+"""Font sizes in percent."""
 
 OWN_FONTS = ("QMenuBar", "QMenu", "QToolButton", "QStatusBar", "QMessageBox", "QTipLabel", "QDockWidgetTitle")
 """Widgets to which a desktop may have given fonts of their own."""
 
 _chosen: list[str] = ["system"]
-_letters: list[float] = [USUAL]
+_font_scale: list[float] = [USUAL]
 
 
 def choose_theme(name: str) -> None:
@@ -109,14 +109,14 @@ def current_theme() -> Theme:
     return THEMES.get(_chosen[0], DARK if dark else LIGHT)
 
 
-def choose_letters(percent: object) -> None:
-    """From now on letters of this size in percent of what the system asks for."""
+def choose_font_size(percent: object) -> None:
+    """From now on a font size in percent of what the system asks for."""
     known = isinstance(percent, int | float) and not isinstance(percent, bool)
-    _letters[0] = min(max(float(percent), SMALLEST), LARGEST) if known else USUAL  # type: ignore[arg-type]
+    _font_scale[0] = min(max(float(percent), SMALLEST), LARGEST) if known else USUAL  # type: ignore[arg-type]
 
 
 def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Container[QObject] = ()) -> None:
-    """Give the whole application a theme, and letters of the chosen size.
+    """Give the whole application a theme, and the chosen font size.
 
     The style sheet is the window's, and the application has none: one of the application takes five times as
     long to reach all widgets, and while it has one every part that is put into another takes its style again.
@@ -124,7 +124,7 @@ def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Contain
     follows it, and names the size so that it is another one. While that stays the sheet does, and widgets
     only look up its colours again; those in `later` when :func:`restyle` is called for them.
     """
-    size = apply_letters(app)
+    size = apply_font_size(app)
     app.setPalette(_palette(theme))
     sheet = f"/* {size:.2f} pt */\n{_style_sheet()}"
     if sheet == window.styleSheet():
@@ -158,13 +158,13 @@ def ensure_polished(widget: QWidget) -> None:
         part.ensurePolished()
 
 
-def letters_share() -> float:
-    """Size of letters in units of what the system asks for, at least 1."""
-    return max(1.0, _letters[0] / USUAL)
+def font_share() -> float:
+    """Font size in units of what the system asks for, at least 1."""
+    return max(1.0, _font_scale[0] / USUAL)
 
 
-def apply_letters(app: QApplication) -> float:
-    """Give the application its style, and letters of the chosen size; returns that in points.
+def apply_font_size(app: QApplication) -> float:
+    """Give the application its style, and the chosen font size; returns that in points.
 
     Best before any widget is made: one that is there and has no window yet may keep the font that it had.
     """
@@ -173,8 +173,8 @@ def apply_letters(app: QApplication) -> float:
     font = app.font()
     of_system = float(app.property("system_letters") or font.pointSizeF())
     app.setProperty("system_letters", of_system)
-    font.setPointSizeF(of_system * _letters[0] / USUAL)
-    if font != app.font() or _letters[0] != USUAL:  # a style may take back fonts of its widgets
+    font.setPointSizeF(of_system * _font_scale[0] / USUAL)
+    if font != app.font() or _font_scale[0] != USUAL:  # a style may take back fonts of its widgets
         app.setFont(font)
         for name in OWN_FONTS:
             app.setFont(font, name)  # type: ignore[arg-type]  # bytes would not do, whatever the stubs say
@@ -232,7 +232,7 @@ QFrame[role="sidebar"] QToolButton:hover {{ background: palette(window); color: 
 QFrame[role="sidebar"] QToolButton[focused="true"] {{ border-color: palette(highlight); }}
 QFrame[role="sidebar"] QToolButton:checked {{ background: palette(midlight); color: palette(text); }}
 *[role="heading"] {{ font-weight: 600; }}
-*[role="remark"] {{ color: palette(placeholder-text); }}
+*[role="hint"] {{ color: palette(placeholder-text); }}
 *[role="warning"] {{ color: palette(link-visited); }}
 QFrame[role="card"] {{ background: palette(base); border: 1px solid palette(mid); border-radius: 5px; }}
 QFrame[role="card"][focused="true"] {{ border-color: palette(highlight); }}

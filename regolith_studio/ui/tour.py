@@ -12,7 +12,7 @@ from regolith_studio.resources import resource
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import heading, remark, with_subscripts
+from regolith_studio.ui.widgets.labels import heading, hint_label, with_subscripts
 
 TOUR_SEEN = "tour_seen"
 """In the preferences of the window: that the tour need not start by itself any more."""
@@ -60,7 +60,7 @@ class Tour(QWidget):
         self._bubble.setObjectName("tour_bubble")
         self._bubble.setProperty("role", "toast")
         self._bubble.setProperty("kind", "note")
-        self._title, self._text, self._count = heading(""), QLabel(), remark()
+        self._title, self._text, self._count = heading(""), QLabel(), hint_label()
         self._text.setWordWrap(True)
         self.back, self.next = QPushButton(tr("Back")), QPushButton(tr("Next"))
         self.end = QPushButton(tr("End tour"))

@@ -14,9 +14,9 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.scene.figure import SideBySide, view_titles
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
+from regolith_studio.session.assessment import assess_polyhedron
 from regolith_studio.session.results import Failure
 from regolith_studio.session.session import Session
-from regolith_studio.session.verdict import polyhedron_verdict
 
 STYLE = """
 html, body, #app { height: 100%; margin: 0; }
@@ -32,7 +32,7 @@ body { font: 14px/1.4 system-ui, sans-serif; color: #2b2f36; background: #f4f6f8
 .control > span { display: block; margin-bottom: 2px; }
 .control > input, .control > select { width: 100%; box-sizing: border-box; font: inherit; }
 .status { color: #56606c; min-height: 1.4em; }
-.verdict { margin: 6px 0 10px; }
+.assessment { margin: 6px 0 10px; }
 table { border-collapse: collapse; width: 100%; font-size: 12.5px; font-variant-numeric: tabular-nums; }
 th, td { text-align: right; padding: 2px 4px; border-bottom: 1px solid #e4e8ec; }
 td:first-child { text-align: left; white-space: nowrap; }
@@ -92,7 +92,7 @@ class ThreeViewPage:
                 _slider("Facets", "n_facets", *FACETS_LIMITS)
                 _selection("Coarsening method", "method", "methods")
                 html.Div("{{ status }}", classes="status", id="status")
-                html.Div("{{ verdict }}", classes="verdict", id="verdict")
+                html.Div("{{ assessment }}", classes="assessment", id="assessment")
                 self._build_table()
 
     def _build_table(self) -> None:
@@ -159,7 +159,7 @@ class ThreeViewPage:
         state.titles = self._titles()
         state.rows = self._rows()
         state.status = self._problem or "; ".join(_task_line(each) for each in session.tasks) or "Done."
-        state.verdict = self._verdict()
+        state.assessment = self._assessment()
 
     def _titles(self) -> list[str]:
         results, body = self._session.results, self._session.results.polyhedron
@@ -185,11 +185,11 @@ class ThreeViewPage:
             for key, row in shown.items()
         ]
 
-    def _verdict(self) -> str:
+    def _assessment(self) -> str:
         results = self._session.results
         if results.coarsened is None:
             return ""
-        rating = polyhedron_verdict(
+        rating = assess_polyhedron(
             results.coarsened, self._session.choices.weights, results.against_particle, results.fewer_facets
         )
         return f"Loss {rating.loss:.4g}, Jaccard distance {rating.jaccard_distance:.3g}. {rating.sentence}"

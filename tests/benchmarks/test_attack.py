@@ -13,7 +13,19 @@ from pathlib import Path
 import pytest
 
 from benchmarks import attack as attack_script
-from benchmarks.attack import COMMANDS, Arena, Ended, Prepared, Row, Rows, Running, attack, judge, lines, tree
+from benchmarks.attack import (
+    COMMANDS,
+    Arena,
+    Ended,
+    Prepared,
+    Row,
+    Rows,
+    Running,
+    attack,
+    evaluate,
+    lines,
+    tree,
+)
 
 
 @pytest.mark.slow
@@ -115,5 +127,5 @@ def test_that_what_a_run_leaves_is_judged(
     arena.reset(None)
     (arena.place / files[1]).write_text(files[0])
     row, case = Row(), Prepared("fit", (), tmp_path, trees["old"], trees["new"], 1.0, 1, ("A remark.",))
-    judge(arena, case, ended, row)
+    evaluate(arena, case, ended, row)
     assert (row.sentences, row.unclear, row.lost, row.mixed, row.left) == counted

@@ -128,7 +128,7 @@ def test_that_draws_are_compared_with_their_sample(command, fit: Path, tmp_path:
     ]
     assert ratios == sorted(ratios, reverse=True)
     lines = result.out.splitlines()
-    assert compared["verdict"] in lines
+    assert compared["assessment"] in lines
     assert sum(line.startswith(("sphericity", "convexity")) for line in lines) == 4
 
 

@@ -73,8 +73,8 @@ def test_that_the_shares_of_a_bracket_are_reported(bracket):
     fit = fit_harmonics(bracket, 10, star_point=(0.5, 2.0, 0.5), sampling_degree=40)
     assert fit.hidden_surface_share == hidden_surface_share(bracket, fit.star_point)
     assert not fit.star_shaped
-    shadow = 0.5 * (2.0 + 1.5) * 1.0
-    assert fit.unrepresentable_volume_share == pytest.approx(shadow / 5.0, abs=0.02)
+    footprint = 0.5 * (2.0 + 1.5) * 1.0
+    assert fit.unrepresentable_volume_share == pytest.approx(footprint / 5.0, abs=0.02)
 
 
 def test_that_a_flat_grain_is_missed_and_an_ellipsoid_as_reference_comes_closer(ellipsoid):

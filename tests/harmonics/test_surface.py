@@ -152,6 +152,6 @@ def test_that_harmonics_of_few_levels_are_held_and_made_again_alike(rough):
 def test_that_shortfalls_are_those_of_chords_under_the_unit_circle():
     edges = icosphere_edges(2)
     sphere = icosphere(2)
-    shortfall = edges.shortfalls(np.ones(len(sphere.vertices)), np.ones(len(edges.ends)))
+    chord_error = edges.chord_errors(np.ones(len(sphere.vertices)), np.ones(len(edges.ends)))
     chords = np.linalg.norm(sphere.vertices[edges.ends].mean(axis=1), axis=1)
-    assert (1 - chords).min() <= shortfall.min() <= shortfall.max() <= (1 - chords).max()
+    assert (1 - chords).min() <= chord_error.min() <= chord_error.max() <= (1 - chords).max()

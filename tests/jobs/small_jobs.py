@@ -86,7 +86,7 @@ def count_until(path: str) -> Steps:
         time.sleep(0.01)
 
 
-def beat(path: str) -> Steps:
+def throttle(path: str) -> Steps:
     """A job without an end that writes to a file at each step."""
     yield Started("Beating")
     while True:

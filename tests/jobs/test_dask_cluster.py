@@ -25,7 +25,7 @@ from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
-from tests.jobs.small_jobs import beat, name_and_numbers, square
+from tests.jobs.small_jobs import name_and_numbers, square, throttle
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
@@ -248,7 +248,7 @@ def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alo
 def test_that_a_job_of_a_cluster_that_is_cancelled_stops_between_two_steps(tmp_path: Path) -> None:
     file = tmp_path / "beat"
     with closing(Executor.on_cluster(workers=1)) as executor:
-        answers = executor.as_completed([Job(beat, (str(file),))])
+        answers = executor.as_completed([Job(throttle, (str(file),))])
         while not file.exists():
             next(answers)
         answers.close()

@@ -24,13 +24,13 @@ def job_steps() -> tuple[list[Step], ModelEvaluationResult]:
 
 
 def test_that_a_judgement_has_its_figures(job_steps: tuple[list[Step], ModelEvaluationResult]) -> None:
-    _, judged = job_steps
-    panels = judged.panels
+    _, evaluated = job_steps
+    panels = evaluated.panels
     assert set(panels) == {"number", "volume", "pairs", "quantiles", "components"}
     assert not panels["components"]
-    assert [panel.x for panel in panels["number"]] == list(judged.study.keys)
+    assert [panel.x for panel in panels["number"]] == list(evaluated.study.keys)
     assert all(panel.curves[0].source == "measured" for panel in panels["pairs"])
-    assert judged.study.models[0].key == "log_field"
+    assert evaluated.study.models[0].key == "log_field"
 
 
 def test_that_half_of_the_particles_lie_inside_the_contour_that_says_so() -> None:

@@ -51,7 +51,7 @@ def threads(owner: Owner) -> Iterator[ThreadRunner]:
     runner = ThreadRunner(owner.calls.put)
     yield runner
     runner.close()
-    assert not [thread for thread in threading.enumerate() if thread.name.startswith("lane ")]
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("queue ")]
 
 
 def ended(received: list[Event]) -> Callable[[], bool]:
@@ -154,7 +154,7 @@ def test_that_closing_stops_the_threads_and_refuses_new_jobs(owner: Owner) -> No
     handle = runner.submit(Job(wait_forever), lambda _: None, "a")
     runner.close()
     assert handle.done
-    assert not [thread for thread in threading.enumerate() if thread.name.startswith("lane ")]
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("queue ")]
     with pytest.raises(RuntimeError, match="closed"):
         runner.submit(Job(count_to, (1,)), lambda _: None)
 

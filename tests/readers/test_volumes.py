@@ -353,12 +353,12 @@ def test_that_the_guide_lists_every_ending_of_a_volume() -> None:
 
 
 def test_that_the_kind_of_a_file_is_judged_once_until_the_file_changes(tmp_path, monkeypatch) -> None:
-    judged = []
-    monkeypatch.setattr(read, "guess_kind", lambda slices: judged.append(len(slices)) or "grey")
+    evaluated = []
+    monkeypatch.setattr(read, "guess_kind", lambda slices: evaluated.append(len(slices)) or "grey")
     np.save(tmp_path / "a.npy", SLICES)
     describe_volume(tmp_path / "a.npy")
     assert open_slabs(tmp_path / "a.npy", voxel_size=1.0).kind == "grey"
-    assert judged == [3]
+    assert evaluated == [3]
     np.save(tmp_path / "a.npy", SLICES[:2])
     open_slabs(tmp_path / "a.npy", voxel_size=1.0)
-    assert judged == [3, 2]
+    assert evaluated == [3, 2]

@@ -102,7 +102,7 @@ def test_that_the_cut_of_a_veil_lies_evenly_over_the_other_cut(
     assert np.ptp(seen, axis=0).max() <= 2
     show_cuts(plotter, POLYHEDRON, "", cuts, {})
     alone = picture(plotter)[middle, middle]
-    assert np.abs(seen[0] - alone).max() > 5, "the veil is seen"
+    assert np.abs(seen[0] - alone).max() > 5, "the overlay is seen"
 
 
 def test_that_the_frame_of_a_section_lies_in_its_plane_and_holds_the_particle(ball):

@@ -13,21 +13,21 @@ from regolith_studio.session.session import Session
 
 
 class Held:
-    """A runner whose jobs wait until the test lets the newest of a lane run."""
+    """A runner whose jobs wait until the test lets the newest of a queue run."""
 
     def __init__(self) -> None:
         self.waiting: dict[str, list[Held.Handle]] = {}
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> "Held.Handle":
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> "Held.Handle":
         handle = Held.Handle(job, listener)
-        self.waiting.setdefault(lane, []).append(handle)
+        self.waiting.setdefault(queue, []).append(handle)
         return handle
 
-    def let(self, lane: str, between: Callable[[], None] = lambda: None) -> bool:
-        """Run the oldest job of a lane to its end; says whether there was one that was not cancelled."""
-        if not self.waiting.get(lane):
+    def let(self, queue: str, between: Callable[[], None] = lambda: None) -> bool:
+        """Run the oldest job of a queue to its end; says whether there was one that was not cancelled."""
+        if not self.waiting.get(queue):
             return False
-        handle = self.waiting[lane].pop(0)
+        handle = self.waiting[queue].pop(0)
 
         def listen(event: object) -> None:
             handle.listener(event)  # type: ignore[arg-type]
@@ -38,8 +38,8 @@ class Held:
 
     def all(self) -> None:
         while any(self.waiting.values()):
-            for lane in list(self.waiting):
-                self.let(lane)
+            for queue in list(self.waiting):
+                self.let(queue)
 
     def close(self) -> None: ...
 

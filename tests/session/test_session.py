@@ -242,7 +242,7 @@ def desk() -> Iterator[Desk]:
     desk = Desk()
     yield desk
     desk.session.close()
-    assert not [thread for thread in threading.enumerate() if thread.name.startswith("lane ")]
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("queue ")]
 
 
 def test_that_by_threads_the_last_of_many_choices_wins(desk: Desk, grains: Path) -> None:

@@ -1,4 +1,4 @@
-"""Only the newest task of a lane is heard; the test decides when each job says what."""
+"""Only the newest task of a queue is heard; the test decides when each job says what."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ class Puppet:
         self.listeners: list[Listener] = []
         self.cancelled: list[int] = []
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> "Puppet.Handle":  # noqa: ARG002
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> "Puppet.Handle":  # noqa: ARG002
         self.listeners.append(listener)
         return Puppet.Handle(self, len(self.listeners) - 1)
 
@@ -159,7 +159,7 @@ def test_that_stopping_a_lane_drops_the_job_that_waits() -> None:
     puppet, tasks, received = board()
     drag(tasks, received, 1)
     drag(tasks, received, 2)
-    tasks.stop_lane("hand")
+    tasks.stop_queue("hand")
     assert tasks.running == ()
     assert puppet.cancelled == [0]
     assert len(puppet.listeners) == 1

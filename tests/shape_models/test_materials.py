@@ -79,7 +79,7 @@ def test_that_the_tool_makes_a_card_with_the_ratios_that_it_aims_at() -> None:
     card = lunar_card(n_particles=60, rounds=1)
     assert card.hull_field is not None
     assert card.hull_field["sizes"] == size_law().stored()
-    assert card.judgement is None
+    assert card.evaluation is None
 
 
 @pytest.mark.slow
@@ -115,9 +115,9 @@ def test_that_the_card_of_a_sample_draws_its_shapes_and_says_how_well() -> None:
     sample = Sample(rows)
     card = MaterialCard.of(sample, "mixed", "Mixed", "Synthetic, for a test.")
     assert card.key == "hull_field"
-    assert card.judgement is not None
-    assert card.judgement["convexity"] < 2.0
-    assert card.judgement["aspect_ratio"] < 6.0
+    assert card.evaluation is not None
+    assert card.evaluation["convexity"] < 2.0
+    assert card.evaluation["aspect_ratio"] < 6.0
     draws = card.model(6).draw(400, 1)
     axes = np.exp(np.abs(principal_axes(np.stack([draws.particle(i).values for i in range(400)])).log_ratios))
     measured = np.exp(np.abs(principal_axes(rows).log_ratios))
@@ -141,8 +141,8 @@ def test_that_the_card_of_a_sample_fills_its_hulls_as_the_particles_do_with_all_
     wanted = shares(Realizations(sample.coefficients, "radius", "measured", 0))
     assert shares(draws) == pytest.approx(wanted, rel=0.005)
     assert shares(Realizations(sample.truncated(10).coefficients, "radius", "cut", 0)) > 1.01 * wanted
-    assert card.judgement is not None
-    assert f"{card.judgement['sphericity']:.2g} % in S" in card.judged
+    assert card.evaluation is not None
+    assert f"{card.evaluation['sphericity']:.2g} % in S" in card.evaluated
 
 
 @pytest.mark.parametrize("l_max", [0, 31])
@@ -162,10 +162,10 @@ def test_that_a_card_of_a_spectrum_says_how_far_its_draws_are_from_the_material(
     file = Path(__file__).parents[2] / "benchmarks/results/shape_models.json"
     rows = json.loads(file.read_text("utf-8"))["draws of a card"]["rows"]
     _, _, *measured = rows["pooled field, l_max = 10"]
-    said = re.search(r"about (\d+) % in AR, (\d+) % in S and (\d+) % in V/CH", materials()["ma165"].judged)
+    said = re.search(r"about (\d+) % in AR, (\d+) % in S and (\d+) % in V/CH", materials()["ma165"].evaluated)
     assert said is not None
     np.testing.assert_allclose([float(number) for number in said.groups()], measured, atol=1.0)
-    assert materials()["lunar_soil"].judged == ""
+    assert materials()["lunar_soil"].evaluated == ""
 
 
 @pytest.mark.parametrize(

@@ -45,27 +45,27 @@ def test_that_the_descriptor_that_is_off_stands_first_and_is_named():
     assert table.rows[0][0] == "convexity"
     assert len(table.rows) == 2 * len(KEYS)
     assert table.column("wasserstein_in_floors")[0] > 5
-    assert "Convexity by" in found.verdict()
-    assert "recombined and sample_matched" in found.verdict()
+    assert "Convexity by" in found.assessment()
+    assert "recombined and sample_matched" in found.assessment()
 
 
 def test_that_a_degree_that_is_too_low_is_named_with_the_one_that_the_sample_has():
     rng = np.random.default_rng(3)
     smooth = {"sphericity": 2.0, "convexity": 2.0}
     measured, drawn, cut = table_of(rng, 200), table_of(rng, 100, **smooth), table_of(rng, 200, **smooth)
-    assert "cut at l_max = 10" in compared(measured, drawn, cut).verdict()
-    assert "draw with l_max 30, from recombined" in compared(measured, drawn, cut).verdict()
-    assert compared(measured, drawn, cut, model="recombined").verdict().endswith("draw with l_max 30.")
+    assert "cut at l_max = 10" in compared(measured, drawn, cut).assessment()
+    assert "draw with l_max 30, from recombined" in compared(measured, drawn, cut).assessment()
+    assert compared(measured, drawn, cut, model="recombined").assessment().endswith("draw with l_max 30.")
 
 
 def test_that_few_particles_are_not_compared():
     rng = np.random.default_rng(4)
     found = compared(table_of(rng, 200), table_of(rng, 19, convexity=9.0))
     assert not found.comparable
-    assert "not compared" in found.verdict()
+    assert "not compared" in found.assessment()
 
 
 def test_that_draws_like_the_sample_are_said_to_be_so():
     rng = np.random.default_rng(5)
-    said = compared(table_of(rng, 200), table_of(rng, 100)).verdict()
+    said = compared(table_of(rng, 200), table_of(rng, 100)).assessment()
     assert said == "100 draws differ from 200 measured particles by no more than sampling noise."

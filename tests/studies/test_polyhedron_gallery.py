@@ -55,9 +55,9 @@ def test_that_the_picture_of_a_union_covers_the_shadow_that_manifold3d_finds() -
     reach = 8.0
     cover = union_picture(elbow(), reach)[..., 3]
     turned = elbow().mesh.vertices @ VIEW.T
-    shadow = manifold_of(replace(elbow().mesh, vertices=turned)).project()
-    assert isinstance(shadow, manifold3d.CrossSection)
-    assert cover.mean() * (2 * reach) ** 2 == pytest.approx(shadow.area(), rel=2e-3)
+    footprint = manifold_of(replace(elbow().mesh, vertices=turned)).project()
+    assert isinstance(footprint, manifold3d.CrossSection)
+    assert cover.mean() * (2 * reach) ** 2 == pytest.approx(footprint.area(), rel=2e-3)
     rows, columns = np.nonzero(cover > 0.5)
     low, high = turned[:, :2].min(axis=0), turned[:, :2].max(axis=0)
     pixel = 2 * reach / len(cover)

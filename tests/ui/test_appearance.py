@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.appearance import LETTERS, Appearance
+from regolith_studio.ui.appearance import FONT_SIZE, Appearance
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.layout import padded
 from regolith_studio.ui.main_window import MainWindow
@@ -27,7 +27,7 @@ from regolith_studio.ui.theme import (
     DARK,
     LIGHT,
     apply_theme,
-    choose_letters,
+    choose_font_size,
     choose_theme,
     current_theme,
 )
@@ -38,7 +38,7 @@ from regolith_studio.ui.widgets.result_view import MAGNIFICATION, ResultView
 def usual_looks():
     yield
     choose_theme("system")
-    choose_letters(None)
+    choose_font_size(None)
 
 
 @pytest.mark.usefixtures("app", "usual_looks")
@@ -49,7 +49,7 @@ def test_that_only_another_look_is_applied(shown, preferences):
     appearance.choose(theme="dark")
     appearance.choose(language="de")
     assert applied == [DARK]
-    appearance.choose(**{LETTERS: 120})
+    appearance.choose(**{FONT_SIZE: 120})
     assert applied == [DARK, DARK]
     assert preferences.window["language"] == "de"
 
@@ -67,13 +67,13 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
     shown, preferences, app, first
 ):
     usual, of_system = app.font(), app.property("system_letters") or app.font().pointSizeF()
-    preferences.window = preferences.window | {LETTERS: first}
+    preferences.window = preferences.window | {FONT_SIZE: first}
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     assert sizes_of_letters(window) == {round(of_system * first / 100, 1)}
     slider = window.page.loss.sliders["min_diameter"]
     figure = window.findChild(ResultView).figures[0]
     for percent in (200, 80, 150):
-        window.appearance.choose(**{LETTERS: percent})
+        window.appearance.choose(**{FONT_SIZE: percent})
         app.processEvents()
         assert sizes_of_letters(window) == {round(of_system * percent / 100, 1)}
         assert figure.font().pointSizeF() == pytest.approx(
@@ -84,7 +84,7 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
         assert window.page.particles.table.rowHeight(0) in (0, letters.height() + 9)
         assert slider.field.width() > letters.horizontalAdvance("-100.00")
         assert slider.label.width() >= slider.label.sizeHint().width()
-    window.appearance.choose(**{LETTERS: 100})
+    window.appearance.choose(**{FONT_SIZE: 100})
     app.setFont(usual)
 
 
@@ -92,7 +92,7 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
 @pytest.mark.slow
 def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, settled):
     usual = app.font()
-    preferences.window = {LETTERS: 200}
+    preferences.window = {FONT_SIZE: 200}
     window = shown(open_window(views="image", preferences=preferences))
     window.resize(1920, 1080)
     settled(window)
@@ -101,7 +101,7 @@ def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, 
     assert page.three_views.width() > 1920 / 3
     for box in (page.coarsening.method, page.coarsening.target):
         assert box.width() >= box.sizeHint().width() - 2, box.objectName()
-    window.appearance.choose(**{LETTERS: 100})
+    window.appearance.choose(**{FONT_SIZE: 100})
     app.setFont(usual)
 
 
@@ -110,16 +110,16 @@ def test_that_a_theme_reaches_dialogs_of_the_window(app, shown):
     apply_theme(app, LIGHT, window)
     dialog = QDialog(window)
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
-    remark = QLabel("1")
-    remark.setProperty("role", "remark")
+    hint_label = QLabel("1")
+    hint_label.setProperty("role", "hint")
     column = QVBoxLayout(dialog)
-    column.addWidget(remark)
+    column.addWidget(hint_label)
     column.addWidget(buttons)
     shown(dialog)
     for theme in (DARK, LIGHT):
         apply_theme(app, theme, window)
         app.processEvents()
-        assert remark.palette().windowText().color() == QColor(theme.muted)
+        assert hint_label.palette().windowText().color() == QColor(theme.muted)
         assert window.palette().window().color() == QColor(theme.window)
     assert all(button.icon().isNull() for button in buttons.buttons())
 

@@ -45,7 +45,7 @@ class Held:
 class HoldingRunner:
     """Begins every job and ends none."""
 
-    def submit(self, _job, listener, lane=""):  # noqa: ARG002
+    def submit(self, _job, listener, queue=""):  # noqa: ARG002
         return Held(listener)
 
     def close(self):

@@ -21,7 +21,7 @@ from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import PAGE, texts
-from regolith_studio.ui.theme import DARK, LIGHT, choose_letters
+from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
 from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
 from regolith_studio.ui.widgets.plots.base import Plot
@@ -89,7 +89,7 @@ def test_that_the_polyhedra_of_both_methods_are_whole_in_their_views(page, name,
     session.choose(n_facets=20, l_max=10)
     session.open_sample()  # the first particle is so rough that its polyhedra stand out far
     wait(lambda: session.choices.selected == "agglutinate-1")
-    wait(lambda: page.annealing._lesson.imitated is session.results.surface)
+    wait(lambda: page.annealing._lesson.approximated is session.results.surface)
     wait(lambda: page.annealing._lesson.exact is not None)
     lesson, view = page.annealing._lesson, page.annealing.frames[name].view
     pose, focus = view.pose, np.array(view.pose.focal_point)
@@ -151,7 +151,7 @@ def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
 def test_that_the_lesson_follows_the_particle_and_the_choices(page, wait):
     page.particle.setCurrentIndex(1)
     assert page._session.choices.selected == "cigar"
-    wait(lambda: page.annealing._lesson.imitated is page._session.results.surface, 20.0)
+    wait(lambda: page.annealing._lesson.approximated is page._session.results.surface, 20.0)
     page._session.choose(n_facets=8)
     wait(lambda: page.annealing._lesson.n_facets == 8)
     page._session.choose(settings=(("iterations", 5000),))
@@ -202,7 +202,7 @@ def test_that_letters_and_formulas_grow_and_the_theme_changes(page, wait):
     assert page.annealing.sentence.fontMetrics().height() > before
     assert page.annealing.rule.sizeHint().height() > high
     page.set_theme(DARK)
-    assert page._context.recall("letters") > 1.5
+    assert page._context.recall("font_size") > 1.5
 
 
 @pytest.mark.slow
@@ -211,11 +211,11 @@ def test_that_letters_that_are_large_everywhere_are_not_enlarged_twice(page, app
     usual = sentence.font().pointSizeF()
     assert usual > app.font().pointSizeF()
     try:
-        choose_letters(200)
+        choose_font_size(200)
         page.set_theme(LIGHT)
         assert sentence.font().pointSizeF() == pytest.approx(app.font().pointSizeF(), abs=0.1)
     finally:
-        choose_letters(None)
+        choose_font_size(None)
     page.set_theme(LIGHT)
     assert sentence.font().pointSizeF() == pytest.approx(usual)
 

@@ -220,7 +220,7 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
         np.sqrt(page._model.spectrum[1:]) / page._model.mean, rel=1e-12
     )
     page.evaluation.setValue({"splits": 1, "repeats": 1, "all_models": False})
-    page.judge()
+    page.evaluate()
     assert page.evaluation.ranking.rowCount() == 1
     assert page.evaluation.ranking.item(0, 0).text() == MODELS["gaussian_field"].label
     shown = page.evaluation.figures["number"].plots
@@ -352,7 +352,7 @@ def test_that_what_is_fitted_drawn_and_judged_goes_through_the_translation(opene
     page.drawing.setValue({"n": 4})
     page.drawing.draw.click()
     page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
-    page.judge()
+    page.evaluate()
     assert [each for each in english_left(page) if each[1] not in ("rough", "r_eq")] == []
     for table in (page.evaluation.ranking, *page.evaluation.tables.values()):
         cells = [
@@ -374,7 +374,7 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     take(page, rough_sample())
     page.source.fit.click()
     page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
-    page.judge()
+    page.evaluate()
     words = page.evaluation.notes.text()
     assert words.startswith("30 gemessene Partikel mit Graden bis 4, 0 ausgelassen;")
     assert words.endswith("1 Teilung, je Anpassung 2 Mal 20 gezogen, Startwert 0.")
@@ -408,7 +408,7 @@ def test_that_draws_are_shown_in_units_of_noise_the_farthest_first(shown):
         DistributionComparison(KEYS, measured, drawn, np.empty((0, len(KEYS))), "log_field", 10, 10)
     )
     assert panel.table.item(0, 0).text() == CATALOGUE["convexity"].label
-    assert "times the sampling noise" in panel.verdict.text()
+    assert "times the sampling noise" in panel.assessment.text()
     panel.show_compared(None)
-    assert panel.verdict.text() == ""
+    assert panel.assessment.text() == ""
     assert not panel.table.isVisible()

@@ -267,7 +267,7 @@ def test_that_a_folder_of_one_s_own_becomes_a_polyhedron_with_its_errors(newcome
     newcomer.rest()
     assert [entry.id for entry in window.session.particles] == ["ball"]
     found = window.session.results.coarsened
-    assert window.page.verdict.figures[0].text() == f"{found.loss:#.4g}"
+    assert window.page.assessment.figures[0].text() == f"{found.loss:#.4g}"
     assert len(window.page.plots.error_bars.plot.series) >= 2
 
 

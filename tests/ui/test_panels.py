@@ -28,7 +28,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.studies.lmax import LmaxStudy
 from regolith_studio.ui.activity import IDLE, TasksPanel
 from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
-from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
+from regolith_studio.ui.pages.explore.panels import AssessmentPanel, FitPanel, LossPanel
 from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.plots import LossCurvePanel
 from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
@@ -228,7 +228,7 @@ def test_that_health_is_told_by_an_icon():
 
 
 def test_that_the_verdict_on_one_particle_never_stands_for_another(shown):
-    panel, choices = shown(VerdictPanel()), Choices(method="quadric", selected="a")
+    panel, choices = shown(AssessmentPanel()), Choices(method="quadric", selected="a")
     found = coarsen(icosphere(2), 12, "quadric")
     loss = f"{found.loss:#.4g}"
     panel.show_results(Results(best=found, coarsened=found), choices)

@@ -13,7 +13,7 @@ from regolith_studio.session.recipe import Recipe
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.translation import Markup, inert, rich, tr, translate
-from regolith_studio.ui.widgets.labels import remark, with_subscripts
+from regolith_studio.ui.widgets.labels import hint_label, with_subscripts
 
 SECONDS = 240
 PICTURE = '<img src="file:///red.png"><h1>TITLE'
@@ -107,7 +107,7 @@ def test_that_a_name_in_a_sentence_is_shown_as_it_is(app, name):  # noqa: ARG001
     mixed = tr("<b>{label}</b> does not contain: {lost}.", label=name, lost="D")
     assert not requests(mixed)
     assert plain(mixed) == f"{name} does not contain: D."
-    label = remark(f"{name} (Fig. 3)")
+    label = hint_label(f"{name} (Fig. 3)")
     assert not requests(label.text())
     assert plain(label.text()) == f"{name} (Fig. 3)"
 

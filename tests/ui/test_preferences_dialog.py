@@ -25,18 +25,18 @@ def test_that_preferences_hold_at_once_or_at_the_next_start(opened, wait):
     app, before = QApplication.instance(), QApplication.font().pointSizeF()
     window.menus.by_name["preferences"].trigger()
     dialog = window.findChild(PreferencesDialog)
-    assert dialog.value() == {"language": "system", "theme": "system", "letters": 100}
+    assert dialog.value() == {"language": "system", "theme": "system", "font_size": 100}
     assert not dialog.note.isVisible()
     dialog.language.setCurrentIndex(dialog.language.findData("de"))
     dialog.language.activated.emit(dialog.language.currentIndex())
     dialog.theme.setCurrentIndex(dialog.theme.findData("dark"))
     dialog.theme.activated.emit(dialog.theme.currentIndex())
-    dialog.letters.setValue(150)
+    dialog.font_size.setValue(150)
     assert dialog.note.isVisible()
     assert app.font().pointSizeF() == pytest.approx(1.5 * before)
     kept = window.preferences.load().window
-    assert (kept["language"], kept["theme"], kept["letters"]) == ("de", "dark", 150)
-    dialog.letters.setValue(100)
+    assert (kept["language"], kept["theme"], kept["font_size"]) == ("de", "dark", 150)
+    dialog.font_size.setValue(100)
     dialog.close()
     assert app.font().pointSizeF() == pytest.approx(before)
     window.appearance.choose(theme="system")
@@ -44,5 +44,5 @@ def test_that_preferences_hold_at_once_or_at_the_next_start(opened, wait):
 
 
 def test_that_preferences_that_make_no_sense_are_the_usual_ones(shown):
-    dialog = shown(PreferencesDialog({"language": "tlh", "theme": 4, "letters": "huge"}))
-    assert dialog.value() == {"language": "system", "theme": "system", "letters": 100}
+    dialog = shown(PreferencesDialog({"language": "tlh", "theme": 4, "font_size": "huge"}))
+    assert dialog.value() == {"language": "system", "theme": "system", "font_size": 100}

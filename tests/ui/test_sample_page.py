@@ -14,7 +14,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.appearance import LETTERS
+from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 
 SECONDS = 120.0
@@ -63,10 +63,10 @@ def test_that_the_filter_narrows_table_plot_and_statistics(page):
     assert page.title.text() == f"Sample ({len(names)} of 12)"
     assert page.statistics.value().rows[0][1] == len(names)
     page.filter.setText("S<oops")
-    assert page.verdict.isVisible()
+    assert page.assessment.isVisible()
     assert [entry.id for entry in page.table.particles.rows] == names
     page.commands()["clear_filter"]()
-    assert not page.verdict.isVisible()
+    assert not page.assessment.isVisible()
     assert len(page.table.particles.rows) == 12
 
 
@@ -159,7 +159,7 @@ def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(w
         return {each.textItem.font().pointSizeF() for each in words}
 
     for letters in (200, 100):
-        window.appearance.choose(**{LETTERS: letters})
+        window.appearance.choose(**{FONT_SIZE: letters})
         wait(lambda: sizes() == {QApplication.font().pointSizeF()})
     assert QApplication.font().pointSizeF() == pytest.approx(usual)
 

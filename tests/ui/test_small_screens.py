@@ -7,12 +7,12 @@ from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QScrollArea, QWidget
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
-from regolith_studio.ui.appearance import LETTERS
+from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.page_stack import ScrollablePage
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.pages.explore.plots import LETTERS as LETTERS_OF_TWO
-from regolith_studio.ui.theme import choose_letters
+from regolith_studio.ui.pages.explore.plots import FONT_SIZE as LETTERS_OF_TWO
+from regolith_studio.ui.theme import choose_font_size
 from regolith_studio.ui.widgets.plots.export import plain_text
 
 SCREEN = QSize(960, 540)
@@ -24,14 +24,14 @@ FRAME = 40
 def usual_letters(app):
     usual = app.font()
     yield
-    choose_letters(None)
+    choose_font_size(None)
     app.setFont(usual)
 
 
 @pytest.mark.usefixtures("usual_letters")
 @pytest.mark.parametrize("letters", [100, pytest.param(150, marks=pytest.mark.slow), 200])
 def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, preferences, letters, app):
-    preferences.window = preferences.window | {LETTERS: letters}
+    preferences.window = preferences.window | {FONT_SIZE: letters}
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     app.processEvents()
     least = window.minimumSizeHint()
@@ -47,7 +47,7 @@ def test_that_no_page_is_scrolled_sideways_on_a_small_screen(
     shown, preferences, app, speaking, language, letters
 ):
     speaking(language)
-    preferences.window = preferences.window | {LETTERS: letters}
+    preferences.window = preferences.window | {FONT_SIZE: letters}
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.resize(1280, 800)
     for key in PAGES:
@@ -67,7 +67,7 @@ def test_that_the_buttons_of_studies_are_whole_in_large_letters(shown, preferenc
     for frame in frames:
         frame.set_count(12)
     for letters in (150, 200):
-        window.appearance.choose(**{LETTERS: letters})
+        window.appearance.choose(**{FONT_SIZE: letters})
         for _ in range(5):
             app.processEvents()
         for button in (frame.start for frame in frames):
@@ -145,7 +145,7 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
 )
 @pytest.mark.parametrize("width", [1280, pytest.param(1920, marks=pytest.mark.slow)])
 def test_that_the_legends_of_explore_are_whole(shown, preferences, settled, app, letters, width):
-    preferences.window = preferences.window | {LETTERS: letters}
+    preferences.window = preferences.window | {FONT_SIZE: letters}
     session = Session(InlineRunner(), Choices(method="quadric"))
     window = MainWindow(session, preferences, "image")
     window.resize(width, 800 if width == 1280 else 1080)

@@ -97,13 +97,13 @@ def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_e
     page = window.go("studies")
     window.session.choose(n_facets=24)
     settled(window)
-    assert page.bar.remark.text() == ""
+    assert page.bar.hint_label.text() == ""
     window.session.choose(stop_at="error")
     settled(window)
-    assert page.bar.remark.text() == "compared at 24 facets each"
+    assert page.bar.hint_label.text() == "compared at 24 facets each"
     window.session.choose(stop_at="facets")
     settled(window)
-    assert page.bar.remark.text() == ""
+    assert page.bar.hint_label.text() == ""
 
 
 def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settled, tmp_path, monkeypatch):
@@ -129,7 +129,7 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
     assert len(header) == len(rows[0]) == 7
     window.session.choose(seed=5)
     settled(window)
-    assert panel.frame.remark.text().endswith("computed with other choices")
+    assert panel.frame.hint_label.text().endswith("computed with other choices")
     monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
     page.save()
     settled(window)

@@ -257,11 +257,11 @@ def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     assert (window.session.choices.n_facets, window.session.choices.seed) == (12, 5)
     drawn = {"population": {"sources": ["ma165"], "n": 9000}, "n_facets": 14}
     target.write_text(json.dumps(drawn))
-    reading = [task.id for task in window.session.tasks if task.lane == "load"]
+    reading = [task.id for task in window.session.tasks if task.queue == "load"]
     window.commands.open_paths([target])
     assert window.session.choices.n_facets == 14
     assert "Run as a batch" in window.toast.sentence.text()
-    assert {task.id for task in window.session.tasks if task.lane == "load"} <= set(reading)
+    assert {task.id for task in window.session.tasks if task.queue == "load"} <= set(reading)
 
 
 def test_that_to_dem_shows_where_datasets_are_exported(window):
@@ -328,7 +328,7 @@ def test_that_every_command_has_its_place_and_a_tip(window):
 
 def test_that_closing_while_busy_stops_what_runs(window, wait):
     window.session.choose(method="annealing", settings=(("iterations", 100_000),))
-    wait(lambda: any(task.lane == "coarsening" for task in window.session.tasks))
+    wait(lambda: any(task.queue == "coarsening" for task in window.session.tasks))
     window.close()
     assert window.session.tasks == ()
     assert window.session.results.coarsened is None, "it was not waited for"

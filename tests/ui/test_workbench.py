@@ -375,7 +375,7 @@ def test_that_closing_asks_while_a_study_runs(window):
     timer.stop()
     assert window.isVisible()
     assert (
-        any(task.lane == "lmax_study" for task in window.session.tasks) or window.session.results.lmax_study
+        any(task.queue == "lmax_study" for task in window.session.tasks) or window.session.results.lmax_study
     )
     timer = answer("closing_leave")
     if window.session.tasks:
@@ -386,7 +386,7 @@ def test_that_closing_asks_while_a_study_runs(window):
 def test_that_closing_does_not_ask_about_work_that_repeats_itself():
     repeating = Task(1, "explore:distances", "Measuring distances", repeats=True)
     assert needs_confirmation([repeating], []) == []
-    builds = [Task(number, lane, "Building the dataset") for number, lane in ((2, "export"), (3, "build"))]
+    builds = [Task(number, queue, "Building the dataset") for number, queue in ((2, "export"), (3, "build"))]
     assert needs_confirmation([repeating, *builds], ["A run is not saved."]) == [
         "Building the dataset is running.",
         "A run is not saved.",
@@ -396,7 +396,7 @@ def test_that_closing_does_not_ask_about_work_that_repeats_itself():
 def test_that_rows_of_many_tasks_keep_their_height(shown, wait):
     panel = shown(TaskListPanel())
     panel.resize(700, 90)
-    panel.show_tasks([Task(number, f"lane {number}", "Counting grains", 1, 9) for number in range(8)])
+    panel.show_tasks([Task(number, f"queue {number}", "Counting grains", 1, 9) for number in range(8)])
     buttons = [panel.findChild(QPushButton, f"stop_task_{number}") for number in range(8)]
     wait(lambda: panel.findChild(QScrollArea).verticalScrollBar().maximum() > 0)
     wait(lambda: all(button.height() >= button.sizeHint().height() for button in buttons))

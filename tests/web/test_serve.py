@@ -76,7 +76,7 @@ def test_that_only_this_machine_is_listened_to(url: str) -> None:
 async def _use_the_page(url: str, folder: Path) -> dict[str, Any]:
     ready = (
         "document.getElementById('status')?.innerText === 'Done.'"
-        " && document.getElementById('verdict').innerText"
+        " && document.getElementById('assessment').innerText"
         " && document.querySelector('.picture img')?.src.startsWith('blob:')"
         " && document.querySelector('.titles').innerText"
     )

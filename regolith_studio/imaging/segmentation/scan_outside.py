@@ -50,7 +50,7 @@ class ScanOutside:
         return replace(self, columns=self.columns[box[:2]])
 
     @property
-    def remark(self) -> str:
+    def hint_label(self) -> str:
         """One sentence for the user."""
         template = N_(
             "{share} % of the voxels lie outside of the scanner's circle (value {value}) and are left out."

@@ -328,12 +328,12 @@ def grains_over_heights(
     Raises InputError if an h is negative, or the volume is too uniform for an automatic threshold.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
-    tried = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
+    trials = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch))
     bodies = yield from _found_bodies(volume, settings, scratch, outside=outside)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     rows = []
-    for each in tried:
+    for each in trials:
         numbers[...] = 0
         sizes, _ = yield from _parted(numbers, bodies, each, scratch)
         rows.append(GrainsAtHeight(each.splitting.h_maxima, sizes))

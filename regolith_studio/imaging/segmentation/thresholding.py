@@ -1,6 +1,6 @@
 """Where grains end: a level on the histogram of grey values.
 
-Small faults of the mask (specks, thin bridges, cracks, pores) are removed by :func:`cleaned`.
+Small faults of the mask (small components, thin bridges, cracks, pores) are removed by :func:`cleaned`.
 """
 
 from dataclasses import dataclass

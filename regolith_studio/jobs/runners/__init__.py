@@ -41,10 +41,10 @@ class Pausable(Handle, Protocol):
 class Runner(Protocol):
     """Runs jobs and passes their events to a listener."""
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> Handle:
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> Handle:
         """Run `job`; `listener` receives its steps and, last, exactly one result.
 
-        ``lane``: jobs of one lane replace each other where the runner says so: the newest wins.
+        ``queue``: jobs of one queue replace each other where the runner says so: the newest wins.
         """
         ...
 
@@ -107,7 +107,7 @@ class _InlineHandle:
 class InlineRunner:
     """Submitting returns when the job has ended."""
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> _InlineHandle:  # noqa: ARG002
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> _InlineHandle:  # noqa: ARG002
         handle = _InlineHandle()
         result = run_job(job, listener, lambda: handle.cancelled)
         handle.done = True

@@ -197,7 +197,7 @@ class DaskRunner:
         """Address of the page on which the cluster shows its work; empty if it has none."""
         return str(self._client.dashboard_link or "")
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> _DaskHandle:  # noqa: ARG002
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> _DaskHandle:  # noqa: ARG002
         if self._client.status != "running":
             raise MissingRequirement(self._lost_connection())
         handle = _DaskHandle(listener)

@@ -225,7 +225,7 @@ class ProcessPoolRunner:
         self._manager: threading.Thread | None = None
         self._at_exit: Any = None
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> _PoolHandle:  # noqa: ARG002
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> _PoolHandle:  # noqa: ARG002
         if self._closed:
             raise RuntimeError("the runner is closed")
         self._number += 1

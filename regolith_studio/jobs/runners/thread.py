@@ -1,4 +1,4 @@
-"""Runs jobs in threads, one a lane, for a program whose main thread must stay free; they can be paused."""
+"""Runs jobs in threads, one a queue, for a program whose main thread must stay free; they can be paused."""
 
 import threading
 from collections.abc import Callable
@@ -115,7 +115,7 @@ class _ThreadHandle:
         self.mailbox.put(ending)
 
 
-class _Lane:
+class _Queue:
     """One thread and the newest job that waits for it."""
 
     def __init__(self, name: str) -> None:
@@ -123,7 +123,7 @@ class _Lane:
         self._running: _ThreadHandle | None = None
         self._next: _ThreadHandle | None = None
         self._closing = False
-        self.thread = threading.Thread(target=self._work, name=f"lane {name}", daemon=True)
+        self.thread = threading.Thread(target=self._work, name=f"queue {name}", daemon=True)
         self.thread.start()
 
     def replace(self, handle: _ThreadHandle) -> None:
@@ -166,7 +166,7 @@ class _Lane:
 
 
 class ThreadRunner:
-    """One worker thread a lane; within a lane a new job stops the running one and takes its place.
+    """One worker thread a queue; within a queue a new job stops the running one and takes its place.
 
     - ``post``: brings a call into the thread that owns the listeners (a queue in tests, the event loop of
       the window); events of one job arrive in order. Progress and partial results that have not been read
@@ -175,23 +175,23 @@ class ThreadRunner:
 
     def __init__(self, post: Post) -> None:
         self._post = post
-        self._lanes: dict[str, _Lane] = {}
+        self._queues: dict[str, _Queue] = {}
         self._closed = False
 
-    def submit(self, job: Job, listener: Listener, lane: str = "") -> _ThreadHandle:
+    def submit(self, job: Job, listener: Listener, queue: str = "") -> _ThreadHandle:
         if self._closed:
             raise RuntimeError("the runner is closed")
         handle = _ThreadHandle(job, _Mailbox(listener, self._post))
-        if lane not in self._lanes:
-            self._lanes[lane] = _Lane(lane)
-        self._lanes[lane].replace(handle)
+        if queue not in self._queues:
+            self._queues[queue] = _Queue(queue)
+        self._queues[queue].replace(handle)
         return handle
 
     def close(self, timeout: float | None = 30.0) -> None:
         """Cancel everything and wait for the threads; a job that never yields is left behind."""
         self._closed = True
-        for lane in self._lanes.values():
-            lane.close()
-        for lane in self._lanes.values():
-            lane.thread.join(timeout)
-        self._lanes.clear()
+        for queue in self._queues.values():
+            queue.close()
+        for queue in self._queues.values():
+            queue.thread.join(timeout)
+        self._queues.clear()

@@ -427,7 +427,7 @@ def open_slabs(
 
 @lru_cache(maxsize=4)  # a file is opened for its header, and again for its voxels
 def _guess_kind(file: SlabReader) -> VolumeKind:
-    """The kind, judged by slices from the middle, or from what comes first where that is quicker."""
+    """The kind, guessed from slices from the middle, or from what comes first where that is quicker."""
     depth, slice_bytes = file.header.shape[0], file.header.slice_bytes
     if file.in_order:
         depth = min(depth, max(1, 4 * _SAMPLE_BYTES // slice_bytes))

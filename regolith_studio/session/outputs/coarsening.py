@@ -68,7 +68,7 @@ def request_document(request: CoarseningRequest) -> dict[str, Any]:
     return values
 
 
-def remarks(done: Sequence[CoarsenedParticle]) -> list[str]:
+def notes_on(done: Sequence[CoarsenedParticle]) -> list[str]:
     """Why requests are not met, and what users should know of results, one sentence each with the name."""
     results = [(each.name, each.coarsened) for each in done if each.coarsened]
     reasons = [f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason]

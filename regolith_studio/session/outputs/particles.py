@@ -252,20 +252,20 @@ def generation_document(generated: GeneratedParticles) -> dict[str, Any]:
         "coefficients": f"of {'the radius' if draws.scale == 'radius' else 'ln radius'}; {CONVENTION}",
         "components": _components(generated),
         "rejection_bias": _rejection_bias(generated),
-        "judgement": content.judgement if isinstance(content, MaterialCard) else None,
+        "evaluation": content.evaluation if isinstance(content, MaterialCard) else None,
         "comparison": _comparison(generated.comparison),
     }
 
 
 def _comparison(compared: DistributionComparison | None) -> dict[str, Any] | None:
-    """The table and its verdict; nothing where there are too few particles."""
+    """The table and its assessment; nothing where there are too few particles."""
     if compared is None or not compared.comparable:
         return None
     table = compared.table()
     names = [column.name for column in table.columns]
     rows = [dict(zip(names, row, strict=True)) for row in table.rows]
     counts = {"measured": len(compared.measured), "drawn": len(compared.drawn)}
-    return counts | {"limit": compared.noise.limit, "verdict": str(compared.verdict()), "rows": rows}
+    return counts | {"limit": compared.noise.limit, "assessment": str(compared.assessment()), "rows": rows}
 
 
 def _rejection_bias(generated: GeneratedParticles) -> dict[str, float] | None:

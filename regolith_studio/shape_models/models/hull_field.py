@@ -258,8 +258,8 @@ class HullFieldModel:
         if len(usable) < MIN_TO_CHOOSE:
             field = _calibrated(plain, target, N_COMPARED)[0]
         else:
-            tried = [_calibrated(replace(plain, faceting=share), target, N_TRIED) for share in FACETINGS]
-            field = _calibrated(min(tried, key=lambda each: each[1])[0], target, N_COMPARED)[0]
+            trials = [_calibrated(replace(plain, faceting=share), target, N_TRIED) for share in FACETINGS]
+            field = _calibrated(min(trials, key=lambda each: each[1])[0], target, N_COMPARED)[0]
         return field if usable.l_max == chosen.l_max else field.refined(whole)
 
     def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> HullField:

@@ -86,7 +86,7 @@ VIEW = np.array([[-0.5, 0.866, 0.0], [-0.296, -0.171, 0.94], [0.814, 0.47, 0.342
 """Rows: to the right, up, and towards the eye."""
 LIGHT = np.array([0.35, 0.25, 0.9])
 COLOUR, EDGE = np.array([0.902, 0.624, 0.0]), "0.15"
-CELL, LETTERS = 1.7, 22
+CELL, FONT_SIZE = 1.7, 22
 """Inches, and letters in a line of a label that is no wider than its room."""
 PIXELS, SAMPLES = 240, 3
 """Of the picture of a union along each side, and of a pixel along each of its own."""
@@ -111,7 +111,7 @@ def gallery_figure(study: GalleryStudy) -> Figure:
         axes[0, column].set_title(as_written(name), fontsize=8)
     for row, label in enumerate(study.rows):
         axes[row, 0].set_ylabel(
-            as_written(fill(label, LETTERS)), rotation=0, ha="right", va="center", fontsize=8
+            as_written(fill(label, FONT_SIZE)), rotation=0, ha="right", va="center", fontsize=8
         )
     return figure
 

@@ -36,7 +36,7 @@ from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import Markup, tr, tr_count
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 
 PLACES = {
     "processes": N_("Processes of this machine"),
@@ -101,7 +101,7 @@ class SourceField(QWidget):
         left_out = tr(
             "{count} of the open particles come from no file and cannot be part of a batch.", count=unsaved
         )
-        self.missing = remark(left_out, "warning")
+        self.missing = hint_label(left_out, "warning")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (self.kind, self.file, self.missing):
@@ -184,7 +184,7 @@ class WorkersField(QWidget):
         return ExecutorSettings("dask", 0, str(address), tls)
 
     def field_values(self) -> dict[str, str]:
-        """For the next sitting."""
+        """For the next start."""
         tls = self.tls.text.text()
         return {"place": str(self.executor.currentData()), "address": self.address.text(), "tls": tls}
 
@@ -206,7 +206,7 @@ class WorkersField(QWidget):
 class RunDialog(QDialog):
     """Asks, then shows the progress; closing it stops nothing.
 
-    Emits ``started`` with the request, and ``stopped``. A dialog calls :meth:`judge` whenever its value may
+    Emits ``started`` with the request, and ``stopped``. A dialog calls :meth:`evaluate` where its value may
     have changed.
 
     - ``name``: begins the names of its widgets.
@@ -226,8 +226,8 @@ class RunDialog(QDialog):
         self._fields: tuple[QWidget, ...] = ()
         self.folder = PathField(f"{name}_folder", tr("Folder of the results"), folder=True)
         self.folder.setValue(folder)
-        self.folder.changed.connect(self.judge)
-        self.state = remark()
+        self.folder.changed.connect(self.evaluate)
+        self.state = hint_label()
         self.state.setObjectName(f"{name}_state")
         self.bar = QProgressBar()
         self.bar.setAccessibleName(tr("Progress"))
@@ -269,7 +269,7 @@ class RunDialog(QDialog):
     def finish(self, sentence: str, done: bool = False) -> None:
         """The work has ended, in whichever way; the fields can be edited again."""
         self._set_running(False)
-        self.judge()
+        self.evaluate()
         self.state.setText(sentence)
         self.results_button.setVisible(done)
 
@@ -287,7 +287,7 @@ class RunDialog(QDialog):
         for hidden in (self.bar, self.halt, self.results_button):
             hidden.hide()
 
-    def judge(self) -> None:
+    def evaluate(self) -> None:
         """Say what is missing, and allow to run where nothing is."""
         if self._running:
             return
@@ -377,11 +377,11 @@ class BatchDialog(RunDialog):
         self.dashboard.hide()
         self._place()
         for changed in (self.source.changed, self.workers.changed):
-            changed.connect(self.judge)
+            changed.connect(self.evaluate)
         for box in (*self.results.values(), self.resume):
-            box.toggled.connect(self.judge)
+            box.toggled.connect(self.evaluate)
         self.started.connect(self.dashboard.hide)
-        self.judge()
+        self.evaluate()
 
     def value(self) -> BatchRequest:
         """The request."""
@@ -429,14 +429,14 @@ class BatchDialog(RunDialog):
         self.dashboard.hide()
         super().finish(sentence, done)
 
-    def judge(self) -> None:
+    def evaluate(self) -> None:
         """Offer what suits folder and source, and say what is missing."""
         if not self._running:
             folder = self.folder.value()
             self.resume.setVisible(folder is not None and is_unfinished(folder))
             for box in self.results.values():
                 box.setEnabled(self.source.value() is None)
-        super().judge()
+        super().evaluate()
 
     def _place(self) -> None:
         grid = QGridLayout()
@@ -452,4 +452,4 @@ class BatchDialog(RunDialog):
             "The results do not depend on the number of processes, and a stopped run can be resumed."
         )
         fields = (self.source, self.resume, self.workers, *self.results.values())
-        self.arrange(form, remark(promise), self.dashboard, fields=fields)
+        self.arrange(form, hint_label(promise), self.dashboard, fields=fields)

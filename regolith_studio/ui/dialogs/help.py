@@ -21,7 +21,7 @@ from regolith_studio.guide import chapter
 from regolith_studio.resources import guide_folder
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import CITATION, heading, remark
+from regolith_studio.ui.widgets.labels import CITATION, heading, hint_label
 from regolith_studio.version import __version__
 
 PAGES = {
@@ -126,13 +126,13 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     purpose = tr("From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.")
     text.addWidget(QLabel(purpose))
     names = ("PySide6-Essentials", "vtk", "pyvista", "pyqtgraph", "numpy", "numba")
-    text.addWidget(remark(", ".join(f"{name} {_version(name)}" for name in names)))
+    text.addWidget(hint_label(", ".join(f"{name} {_version(name)}" for name in names)))
     drawn = tr("drawn by OpenGL in the window") if renderer == "live" else tr("pictures, drawn off-screen")
-    text.addWidget(remark(tr("Three-dimensional views: {how}", how=drawn)))
-    source = remark(tr("After: {title}.", title=PAPER))
+    text.addWidget(hint_label(tr("Three-dimensional views: {how}", how=drawn)))
+    source = hint_label(tr("After: {title}.", title=PAPER))
     source.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
     text.addWidget(source)
-    text.addWidget(remark(_licences()))
+    text.addWidget(hint_label(_licences()))
     row = QHBoxLayout()
     row.setSpacing(16)
     row.addWidget(mark)

@@ -21,7 +21,7 @@ from regolith_studio.readers.particles import has_tables
 from regolith_studio.readers.units import UNITS, unit_factor
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.labels import remark, short_number
+from regolith_studio.ui.widgets.labels import hint_label, short_number
 from regolith_studio.ui.widgets.numbers import DecimalField
 
 SETTING = "on_opening"
@@ -95,7 +95,7 @@ class UnitDialog(QDialog):
         super().__init__(parent)
         self._first: tuple[str, float] | None = None
         self._touched = False
-        self.size_note = remark()
+        self.size_note = hint_label()
         self.size_note.setObjectName("unit_size")
         self.setWindowTitle(tr("Length unit"))
         self.setObjectName("unit_dialog")
@@ -145,7 +145,9 @@ class UnitDialog(QDialog):
         layout.addWidget(question)
         layout.addLayout(form)
         layout.addWidget(self.size_note)
-        layout.addWidget(remark(tr("Only 3MF and glTF state their unit. The answer is kept for the folder.")))
+        layout.addWidget(
+            hint_label(tr("Only 3MF and glTF state their unit. The answer is kept for the folder."))
+        )
         layout.addWidget(buttons)
         self.unit.currentIndexChanged.connect(self._show_voxel)
         self.unit.currentIndexChanged.connect(self._show_size)

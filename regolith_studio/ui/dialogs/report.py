@@ -19,7 +19,7 @@ from regolith_studio.session.report.write import PAGE, SectionBegun
 from regolith_studio.ui.dialogs.batch import RunDialog
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.forms import SettingsForm
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class ReportDialog(RunDialog):
         self.section = QLabel()
         self.section.setObjectName("report_section")
         self.section.hide()
-        self.form.valueChanged.connect(self.judge)
+        self.form.valueChanged.connect(self.evaluate)
         self._place()
-        self.judge()
+        self.evaluate()
 
     def value(self) -> ReportRequest:
         """The request."""
@@ -86,7 +86,7 @@ class ReportDialog(RunDialog):
         known = {each.name: each for each in dataclasses.fields(ReportSettings)}
         numbers = {name: value for name, value in values.items() if type(value) is int and name in known}
         self.form.setValue(self.form.value() | numbers)
-        self.judge()
+        self.evaluate()
 
     def show_partial(self, value: object) -> None:
         """Say which section is made."""
@@ -112,4 +112,4 @@ class ReportDialog(RunDialog):
             "Figs. 2 to 9 and Tables 1 and 2 of the paper for the open particles, as one HTML page, PDF, and "
             "tables. The command “report” writes the same."
         )
-        self.arrange(form, remark(contents), self.section, fields=(self.form,))
+        self.arrange(form, hint_label(contents), self.section, fields=(self.form,))

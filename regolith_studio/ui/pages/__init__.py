@@ -51,16 +51,16 @@ What a page can rely on
   ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;
   what was missed follows at the next visit. What keeps particles says ``keeps_particles=True``, to let go of
   those that have been closed. ``context.bindings.listen(event, action)`` is not held back.
-* **Work**: ``context.start(title, job, finished, partial=..., lane=...)`` runs a generator of
+* **Work**: ``context.start(title, job, finished, partial=..., queue=...)`` runs a generator of
   ``Started``, ``Progress`` and ``Partial`` events in a thread; requests are numbered, the newest of a
-  lane wins, what an older one says is dropped. Progress, time left and the stop button are in the
+  queue wins, what an older one says is dropped. Progress, time left and the stop button are in the
   status bar and in the task list by themselves; ``context.session.cancel(number)`` cancels, and
   :class:`~regolith_studio.ui.widgets.study_frame.StudyFrame` shows a task beside a plot. Never compute
   in a slot for more than 50 ms.
 * **Three-dimensional views**: ``make_view(context.views, theme.surroundings)`` from ``ui.views.factory``,
   filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.on_close`.
 * **Words**: ``context.toast.note("Saved.")``, ``context.toast.problem("One sentence.", details)``.
-* **Memory**: ``context.remember(name, value)``, ``context.recall(name, default)`` between sittings;
+* **Memory**: ``context.remember(name, value)``, ``context.recall(name, default)`` from one start to the next;
   :meth:`PageWidget.state` and ``restore`` for project files. A splitter made by ``ui.layout`` that has
   an object name is remembered by itself.
 * **Files**: a page that names kinds in ``opens=(FileKind.VOLUME,)`` gets dropped and opened files of that

@@ -27,7 +27,7 @@ EDGE = 0.02
 """Share of the picture that the line of a wipe keeps from its edges."""
 
 
-class DividerGrip:
+class DividerHandle:
     """Moves the line of a wipe.
 
     ``moved``: told the new share of the picture's width.
@@ -233,10 +233,10 @@ class Comparison:
         self._shapes: Mapping[str, SceneShape] = {}
         self._theme: Theme | None = None
         self.dividers: dict[str, Divider] = {}
-        grip = PlaneGrip(lambda: sections.framed, sections.move_to)
+        handle = PlaneGrip(lambda: sections.framed, sections.move_to)
         for name, frame in frames.items():
             frame.view.draw(partial(self._add_divider, name))
-            frame.view.mouse.grips += [DividerGrip(self.dividers[name], self.set_share), grip]
+            frame.view.mouse.handles += [DividerHandle(self.dividers[name], self.set_share), handle]
             frame.partner.setValue(self.partners[name])
             frame.partnerChanged.connect(partial(self.set_partner, name))
         sections.changed.connect(partial(self.apply_style, *NAMES))
@@ -251,7 +251,7 @@ class Comparison:
             self.apply_style(*{*concerned, *(changed if comparing else ())})
 
     def set_mode(self, *, overlay: bool | None = None, wipe: bool | None = None) -> None:
-        """Lay the partner over each body, or show it to the right of the line; both: a veil to the right."""
+        """Lay the partner over each body, or show it to the right of the line; both: overlay to the right."""
         self.overlay = self.overlay if overlay is None else overlay
         self.wipe = self.wipe if wipe is None else wipe
         for frame in self._frames.values():

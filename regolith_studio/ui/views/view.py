@@ -40,7 +40,7 @@ ZOOMS = {
 }
 
 
-class Grip(Protocol):
+class DragHandle(Protocol):
     """A handle in the picture that can be dragged; pixels count from the upper left."""
 
     cursor: Qt.CursorShape
@@ -70,8 +70,8 @@ class CameraMouse:
     ) -> None:
         self._pose, self._move, self._widget = pose, move, widget
         self._last: QPointF | None = None
-        self._held: Grip | None = None
-        self.grips: list[Grip] = []
+        self._held: DragHandle | None = None
+        self.handles: list[DragHandle] = []
         self.pointed: list[Pointed] = []
         self.left: list[Callable[[], None]] = []
 
@@ -131,22 +131,24 @@ class CameraMouse:
 
     def forget(self) -> None:
         """Tell nobody any more, and hold nothing."""
-        for each in (self.grips, self.pointed, self.left):
+        for each in (self.handles, self.pointed, self.left):
             each.clear()
         self._held = None
 
     def _hover(self, place: QPointF) -> None:
-        grip = self._under(place)
-        self._widget.setCursor(grip.cursor if grip is not None else Qt.CursorShape.ArrowCursor)
-        if grip is None:
+        handle = self._under(place)
+        self._widget.setCursor(handle.cursor if handle is not None else Qt.CursorShape.ArrowCursor)
+        if handle is None:
             for callback in self.pointed:
                 callback(self._sight(), place.x(), place.y())
         else:
             self.leave()
 
-    def _under(self, place: QPointF) -> Grip | None:
+    def _under(self, place: QPointF) -> DragHandle | None:
         sight = self._sight()
-        return next((grip for grip in self.grips if grip.is_under_cursor(sight, place.x(), place.y())), None)
+        return next(
+            (handle for handle in self.handles if handle.is_under_cursor(sight, place.x(), place.y())), None
+        )
 
     def _sight(self) -> Projection:
         return Projection(self._pose(), self._widget.width(), self._widget.height())
@@ -193,7 +195,7 @@ class SceneView(Protocol):
 
     @property
     def mouse(self) -> CameraMouse:
-        """Its ``grips`` can be dragged; ``pointed`` are told where the mouse rests, ``left`` when it left."""
+        """Its ``handles`` can be dragged; ``pointed`` get where the mouse rests, ``left`` when it left."""
         ...
 
     def set_surroundings(self, surroundings: ThemeColors) -> None:

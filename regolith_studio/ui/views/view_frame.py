@@ -57,7 +57,7 @@ class ViewFrame(QFrame):
         self._title.setProperty("role", "heading")
         self._title.setMinimumWidth(10)
         self._title.setObjectName(f"title_{name}")
-        self.detail = ElidedLabel(role="remark")
+        self.detail = ElidedLabel(role="hint")
         self.partner = ChoiceBox(f"partner_{name}", tr(compare), partners or {})
         self.partner.setMinimumContentsLength(7)
         self.partner.prefers_whole = True

@@ -58,7 +58,7 @@ class HeatTable(QWidget):
         self.table = numbers_table(tr("Table of errors"))
         self._rows = FontRowHeight(self.table, SPARE)
         self._stack = QStackedLayout(self)
-        self._stack.addWidget(centred_remark(placeholder))
+        self._stack.addWidget(centred_hint(placeholder))
         self._stack.addWidget(self.table)
 
     def values(self) -> tuple[tuple[float, ...], ...]:
@@ -92,12 +92,12 @@ class HeatTable(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._keep_legible()
+        self._fit_to_font()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.FontChange:
-            self._keep_legible()
+            self._fit_to_font()
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -111,10 +111,10 @@ class HeatTable(QWidget):
                 text = percentage(value) + self._band(at, column)
                 heat = math.sqrt(value / top) if top > 0.0 else 0.0
                 self.table.setItem(at, column, self._cell(text, heat))
-        self._keep_legible()
+        self._fit_to_font()
 
-    def _keep_legible(self) -> None:
-        keep_legible(self.table, self.width(), self._rows, 1 if self._bands is None else 2)
+    def _fit_to_font(self) -> None:
+        fit_to_font(self.table, self.width(), self._rows, 1 if self._bands is None else 2)
 
     def _band(self, row: int, column: int) -> str:
         """A second line with the interval, unless its rounded ends are equal."""
@@ -163,7 +163,7 @@ def set_head_tips(table: QTableWidget, tips: Sequence[str]) -> None:
             item.setToolTip(inert(tip))
 
 
-def keep_legible(table: QTableWidget, width: int, heights: FontRowHeight, lines: int) -> None:
+def fit_to_font(table: QTableWidget, width: int, heights: FontRowHeight, lines: int) -> None:
     """Make columns at least as wide as their names and cells; a table that is too narrow is scrolled.
 
     The width of a cell is what its delegate asks for: with less, the longest text is elided.
@@ -202,10 +202,10 @@ def _lines_of_names(table: QTableWidget, width: int) -> int:
     return math.ceil(max(heights, default=0) / letters.lineSpacing())
 
 
-def centred_remark(text: str) -> QLabel:
+def centred_hint(text: str) -> QLabel:
     """A centred placeholder text."""
     label = QLabel(text)
-    label.setProperty("role", "remark")
+    label.setProperty("role", "hint")
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)
     label.setWordWrap(True)
     return label

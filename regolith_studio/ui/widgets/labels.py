@@ -1,4 +1,4 @@
-"""Labels and their texts: headings, remarks, elided text, symbols with subscripts, short numbers."""
+"""Labels and their texts: headings, hints, elided text, symbols with subscripts, short numbers."""
 
 import html
 import re
@@ -88,7 +88,7 @@ def heading(text: str) -> QLabel:
     return label
 
 
-def remark(text: str = "", role: str = "remark") -> QLabel:
+def hint_label(text: str = "", role: str = "hint") -> QLabel:
     """A wrapped text in a muted colour, or in that of a warning if `role` is ``warning``."""
     label = CitingLabel(text)
     label.setProperty("role", role)
@@ -165,7 +165,7 @@ class WrappedLabel(QLabel):
 class ElidedLabel(QWidget):
     """One line of plain text, elided if necessary, with the whole text as tool tip.
 
-    ``role``: ``heading`` or ``remark``, for the style sheet. ``elide``: where it is elided: paths in the
+    ``role``: ``heading`` or ``hint_label``, for the style sheet. ``elide``: where it is elided: paths in the
     middle.
     """
 

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLab
 
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import FixedHeightText, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, hint_label
 
 MAGNIFICATION = 1.75
 """Size of the figures in units of the widget's font."""
@@ -87,8 +87,8 @@ class ResultView(QFrame):
         self.setProperty("role", "card")
         self._texts, self._lead, self._record = (start, again or start), lead, ResultRecord()
         self.figures = tuple(QLabel("–") for _ in captions)
-        self.captions = tuple(remark(caption) for caption in captions)
-        self.sentence = remark()
+        self.captions = tuple(hint_label(caption) for caption in captions)
+        self.sentence = hint_label()
         self.sentence.setObjectName(f"{name}_sentence")
         self.button = QPushButton(start, self)
         self.button.setObjectName(f"{name}_button")

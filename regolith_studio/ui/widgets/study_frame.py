@@ -29,14 +29,14 @@ class StudyFrame(QWidget):
         self.bar.setAccessibleName(tr("Progress of the study"))
         self.bar.setFixedHeight(12)
         self.bar.setTextVisible(False)
-        self.remark = ElidedLabel(role="remark")
+        self.hint_label = ElidedLabel(role="hint")
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
         row.setSpacing(10)
         row.addWidget(self.start)
         row.addWidget(self.stop)
         row.addWidget(self.bar, 1)
-        row.addWidget(self.remark, 1)
+        row.addWidget(self.hint_label, 1)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(2)
@@ -62,7 +62,7 @@ class StudyFrame(QWidget):
         if focused:  # otherwise the focus goes to the next widget
             seen.setFocus()
         hidden.hide()
-        self.remark.setVisible(not running)
+        self.hint_label.setVisible(not running)
         self.bar.setVisible(running)
         self.stop.setText(tr("Stopping …") if task is not None and task.stopping else tr("Stop"))
         if task is not None:
@@ -70,6 +70,6 @@ class StudyFrame(QWidget):
             self.bar.setRange(0, task.total)
             self.bar.setValue(task.done)
 
-    def set_remark(self, text: str) -> None:
+    def set_hint(self, text: str) -> None:
         """Set the text beside the button."""
-        self.remark.setText(text)
+        self.hint_label.setText(text)

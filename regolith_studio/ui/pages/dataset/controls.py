@@ -17,7 +17,7 @@ from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.settings import setting_of
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
 
 MAX_REPRESENTATIVES = 200
@@ -53,7 +53,7 @@ class RepresentativesPanel(QWidget):
         super().__init__()
         self.setObjectName("dataset_representatives")
         self._several = False
-        self.population = remark()
+        self.population = hint_label()
         self.start = QPushButton(tr("Find representatives"))
         self.count = NumberSlider(COUNT)
         self.which = QComboBox()
@@ -156,7 +156,7 @@ class SizesPanel(QWidget):
         super().__init__()
         self.setObjectName("dataset_size_kinds")
         self.kind, self.numbers = QComboBox(), NumbersLine()
-        self.hint, self.problem = remark(), remark(role="warning")
+        self.hint, self.problem = hint_label(), hint_label(role="warning")
         for key, (label, _) in SIZES.items():
             self.kind.addItem(tr(label), key)
         self.kind.setObjectName("dataset_size_kind")
@@ -233,7 +233,7 @@ class FolderPanel(QWidget):
         self.name = QLineEdit("regolith")
         self.name.setObjectName("dataset_name")
         self.name.setAccessibleName(tr("Name of the dataset"))
-        self.shapes, self.state = remark(), remark()
+        self.shapes, self.state = hint_label(), hint_label()
         self.open = QPushButton(tr("Open a dataset …"))
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)

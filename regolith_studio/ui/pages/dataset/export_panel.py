@@ -30,7 +30,7 @@ from regolith_studio.settings import settings_in
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.forms import ParameterForm
-from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
+from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.presets import PresetForm
 
@@ -79,19 +79,19 @@ class ExportPanel(QWidget):
         layout.setSpacing(4)
         layout.addWidget(heading(tr("4  Export to")))
         for title, keys in groups().items():
-            layout.addWidget(remark(tr(title)))
+            layout.addWidget(hint_label(tr(title)))
             for key in keys:
                 layout.addWidget(self.boxes[key])
         layout.addLayout(form)
         layout.addWidget(
             Collapsible(
                 tr("Material and cylinder"),
-                _column((self.contact, self.test, self.times, remark(f"* {tr(NOT_GIVEN)}"))),
+                _column((self.contact, self.test, self.times, hint_label(f"* {tr(NOT_GIVEN)}"))),
             )
         )
         self.foot = QWidget()
         """Belongs below the scrolled column: the button stays in sight however many formats there are."""
-        self.preview = remark()
+        self.preview = hint_label()
         self.preview.setObjectName("dataset_preview")
         self.enlarge = QPushButton()
         self.enlarge.setObjectName("dataset_enlarge")
@@ -302,7 +302,7 @@ class LossesLabel(QScrollArea):
         self.setAccessibleName(tr("Limits of the formats"))
         self.setWidgetResizable(True)
         self.setProperty("role", "texts")
-        self.label = remark()
+        self.label = hint_label()
         self.label.setTextFormat(Qt.TextFormat.RichText)
         self.label.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.label.setContentsMargins(8, 6, 8, 6)
@@ -343,7 +343,7 @@ class ExportsList(QWidget):
         self._rows = QVBoxLayout()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 6, 8, 6)
-        self._empty = remark(tr("What has been exported is listed here, with the command that loads it."))
+        self._empty = hint_label(tr("What has been exported is listed here, with the command that loads it."))
         layout.addWidget(self._empty)
         layout.addLayout(self._rows)
         layout.addStretch(1)
@@ -376,7 +376,7 @@ class ExportsList(QWidget):
         look.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(one.folder))))
         copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(one.load_command))
         line.addWidget(name)
-        line.addWidget(ElidedLabel(one.load_command, role="remark"), 1)
+        line.addWidget(ElidedLabel(one.load_command, role="hint"), 1)
         line.addWidget(copy)
         line.addWidget(look)
         return row

@@ -26,7 +26,7 @@ from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, tr
-from regolith_studio.ui.widgets.labels import ElidedLabel, remark
+from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
 PICTURE = 40
@@ -49,9 +49,9 @@ class LibraryPanel(QWidget):
         self._entries: tuple[CatalogEntry, ...] = ()
         self._pictures: dict[tuple[str, str], QIcon] = {}
         self.choose, self.again = QPushButton(tr("Folder …")), QPushButton(tr("Refresh"))
-        self.place = ElidedLabel("", role="remark")
+        self.place = ElidedLabel("", role="hint")
         self.words = QLineEdit(placeholderText=tr("Filter"), clearButtonEnabled=True)
-        self.tree, self.facts = QTreeWidget(), remark(tr(EMPTY))
+        self.tree, self.facts = QTreeWidget(), hint_label(tr(EMPTY))
         self.use, self.look = QPushButton(tr("Use this dataset")), QPushButton(tr("Open folder"))
         self._configure()
         self._arrange()
@@ -88,7 +88,7 @@ class LibraryPanel(QWidget):
             self.place.setText(str(root))
             self._entries = ()
             job = Job(list_library, (Path(root), self._results()))
-            self._context.start(tr("Searching for datasets"), job, self._take, lane=LANE, repeats=True)
+            self._context.start(tr("Searching for datasets"), job, self._take, queue=LANE, repeats=True)
 
     def suggest(self, root: Path) -> None:
         """List this folder if none has been chosen yet; else update the list."""

@@ -155,7 +155,7 @@ class DatasetPage(PageWidget):
         known = self._survey.population if self._survey else None
         job = Job(survey_representatives, (self._particles, self.representatives.request(), known))
         self._context.start(
-            tr("Finding representatives"), job, self._show_survey, partial=self._show_point, lane=FIND
+            tr("Finding representatives"), job, self._show_survey, partial=self._show_point, queue=FIND
         )
 
     def build_in(self, folder: Path, overwrite: bool = False, exports: Path | None = None) -> None:
@@ -191,7 +191,7 @@ class DatasetPage(PageWidget):
             lambda built: self._take_built(built, exports),
             failed=self._show_failure,
             stopped=self._forget_dataset,
-            lane=BUILD,
+            queue=BUILD,
         )
 
     def _show_failure(self, failure: Failed) -> None:
@@ -209,7 +209,7 @@ class DatasetPage(PageWidget):
     def open_folder(self, folder: Path) -> None:
         """Show the dataset of a folder."""
         self._context.start(
-            tr("Reading the dataset"), Job(open_dataset_folder, (folder,)), self._take_read, lane=BUILD
+            tr("Reading the dataset"), Job(open_dataset_folder, (folder,)), self._take_read, queue=BUILD
         )
 
     def open_path(self, path: Path) -> None:
@@ -231,7 +231,7 @@ class DatasetPage(PageWidget):
             self._context.toast.problem(tr("There is no dataset to check: build or open one first."))
             return
         job = Job(validate_dataset_folder, (self._folder,))
-        self._context.start(tr("Checking the dataset"), job, self._report_problems, lane="validate")
+        self._context.start(tr("Checking the dataset"), job, self._report_problems, queue="validate")
 
     def export(self) -> None:
         """Ask for a folder, and write the selected formats there, and the dataset unless it is written."""
@@ -272,7 +272,7 @@ class DatasetPage(PageWidget):
             self._take_exports,
             self._add_export,
             failed=self._show_failure,
-            lane=EXPORT,
+            queue=EXPORT,
         )
 
     def _place_before(self) -> str:
@@ -318,7 +318,7 @@ class DatasetPage(PageWidget):
             return
         request = replace(self.representatives.request(), count=count)
         job = Job(choose_job, (self._survey.population, request))
-        self._context.start(tr("Choosing representatives"), job, self._take_chosen, lane="choice")
+        self._context.start(tr("Choosing representatives"), job, self._take_chosen, queue="choice")
 
     def _take_chosen(self, chosen: ChosenParticles) -> None:
         self._chosen = chosen

@@ -59,7 +59,7 @@ class RepresentativesGallery(QWidget):
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.list.setFrameShape(self.list.Shape.NoFrame)
         self.empty = QLabel(tr("Press Find representatives to show them here with their weights."))
-        self.empty.setProperty("role", "remark")
+        self.empty.setProperty("role", "hint")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setWordWrap(True)
         layout = QVBoxLayout(self)
@@ -163,7 +163,7 @@ class QualityPlot(CurvePlot):
         self._points = curve.points if curve else ()
         self._noise = curve.noise_mean if curve else None
         enough = curve.sufficient_count if curve else None
-        self.set_remark(tr("below the sampling noise for N ≥ {count}", count=enough) if enough else "")
+        self.set_hint(tr("below the sampling noise for N ≥ {count}", count=enough) if enough else "")
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:

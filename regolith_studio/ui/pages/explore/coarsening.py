@@ -23,7 +23,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
 from regolith_studio.ui.widgets.numbers import NumberSlider
 
 AMOUNTS = {
@@ -71,7 +71,7 @@ class CoarseningPanel(QWidget):
         self._settings.setContentsMargins(14, 0, 0, 0)
         self.more = Collapsible(tr("Settings of the method"), inside)
         self.more.button.setObjectName("method_settings")
-        self.outcome = remark(role="warning")
+        self.outcome = hint_label(role="warning")
         self.outcome.hide()
         self.set_theme(current_theme())
         self._arrange()

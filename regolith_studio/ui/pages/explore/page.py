@@ -16,16 +16,16 @@ from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.shapes import FIT
+from regolith_studio.session.assessment import redundant_planes
 from regolith_studio.session.choices import PARTICLE_CHOICES, Choices
 from regolith_studio.session.results import Results
 from regolith_studio.session.study_requests import varied_rows
-from regolith_studio.session.verdict import redundant_planes
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import GAIN, SWEEPS, sufficient_facets
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
-from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
+from regolith_studio.ui.pages.explore.panels import AssessmentPanel, FitPanel, LossPanel
 from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plots import PlotArea
@@ -130,7 +130,7 @@ class FacetSearch(QObject):
             tr("Searching for the sufficient number of facets"),
             job,
             lambda study: self._take(choices, study),
-            lane=LANE,
+            queue=LANE,
         )
 
     def _take(self, choices: Choices, study: CoarseningStudy) -> None:
@@ -142,7 +142,7 @@ class FacetSearch(QObject):
     def _show(self) -> None:
         """Show the answer while it belongs to the present choices."""
         choices, results = self._session.choices, self._session.results
-        running = any(task.lane == f"{self._context.key}:{LANE}" for task in self._session.tasks)
+        running = any(task.queue == f"{self._context.key}:{LANE}" for task in self._session.tasks)
         if self._found is not None and not _differ_in_facets_only(self._found[0], choices):
             self._found = None
         if self._found is not None:
@@ -180,7 +180,7 @@ class ExplorePage(PageWidget):
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         self.three_views = ThreeViews(context.views, self._measure_distances)
         self.plots = PlotArea(self.three_views)
-        self.verdict = VerdictPanel()
+        self.assessment = AssessmentPanel()
         self.three_views.hovered.connect(self._show_status)
         self.pictures = PictureExport(context, self.three_views, self)
         self.replay = RunReplay(self)
@@ -196,7 +196,7 @@ class ExplorePage(PageWidget):
             job,
             show,
             failed=lambda failure: refuse(failure.sentence),
-            lane="distances",
+            queue="distances",
             repeats=True,
             after_running=True,
         )
@@ -230,7 +230,7 @@ class ExplorePage(PageWidget):
         below = QWidget()
         column = QVBoxLayout(below)
         column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.verdict)
+        column.addWidget(self.assessment)
         column.addWidget(self.plots, 1)
         middle = stacked([self.three_views, below], [480, max(400, high_enough)], stretch=0)
         middle.setStretchFactor(1, 1)  # views wider than high would leave their sides empty
@@ -268,7 +268,7 @@ class ExplorePage(PageWidget):
         self.replay.ended.connect(self._show_coarsening)
         bindings.refresh("coarsening", self._show_coarsening)
         bindings.refresh(
-            "coarsening comparison", lambda: self.verdict.show_results(session.results, session.choices)
+            "coarsening comparison", lambda: self.assessment.show_results(session.results, session.choices)
         )
         self.particles.unitRequested.connect(context.commands.change_unit)
         self.plots.wire(session, bindings)
@@ -303,7 +303,7 @@ class ExplorePage(PageWidget):
             Job(check_fit, (entry.particle.mesh, fit.truncated(choices.l_max), request)),
             lambda said: self._show_findings(said) if self._session.choices is choices else None,
             failed=lambda _: None,
-            lane="check_fit",
+            queue="check_fit",
             repeats=True,
         )
 

@@ -13,14 +13,20 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.messages import N_
+from regolith_studio.session.assessment import PolyhedronAssessment, assess_polyhedron
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.results import Results
-from regolith_studio.session.verdict import PolyhedronVerdict, polyhedron_verdict
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import number_text, tr, translate
 from regolith_studio.ui.widgets.forms import SettingsForm
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark, rich_symbol, with_subscripts
+from regolith_studio.ui.widgets.labels import (
+    FixedHeightText,
+    heading,
+    hint_label,
+    rich_symbol,
+    with_subscripts,
+)
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
@@ -44,8 +50,8 @@ class FitPanel(QWidget):
         self._ways.rows.setContentsMargins(14, 0, 0, 0)
         self.more = Collapsible(tr("Radius function"), self._ways)
         self.more.button.setObjectName("radius_settings")
-        self.findings = remark()
-        self.warnings = remark(role="warning")
+        self.findings = hint_label()
+        self.warnings = hint_label(role="warning")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Spherical-harmonics fit")))
@@ -133,7 +139,7 @@ class LossPanel(QWidget):
         self.preset, self.reset = self.bar.box, self.bar.reset
         self.reset.setObjectName("reset_weights")
         self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
-        self.origin = remark()
+        self.origin = hint_label()
         self._arrange()
         self._connect()
         self._list()
@@ -257,11 +263,11 @@ class LossPanel(QWidget):
         self.origin.setText(f"{origin} {translate(kept_sentence(self.value()['weights']))}")
 
 
-class VerdictPanel(ResultView):
+class AssessmentPanel(ResultView):
     """The result of the page Explore; dimmed while the polyhedron is being replaced."""
 
     def __init__(self) -> None:
-        super().__init__("verdict", (tr("Loss"), "RMSRE", tr("Jaccard distance")))
+        super().__init__("assessment", (tr("Loss"), "RMSRE", tr("Jaccard distance")))
         tips = (
             tr("Weighted sum of the Jaccard distance and the relative errors (Eq. 9)"),
             tr("Root mean squared relative error over the descriptors that have a weight (Eq. 10)"),
@@ -269,15 +275,15 @@ class VerdictPanel(ResultView):
         )
         for place, tip in enumerate(tips):
             self.caption(place, self.captions[place].text(), tip)
-        self._shown: PolyhedronVerdict | None = None
+        self._shown: PolyhedronAssessment | None = None
         self._particle = ""
 
     def show_results(self, results: Results, choices: Choices) -> None:
-        """Show the verdict on the finished polyhedron."""
+        """Show the assessment on the finished polyhedron."""
         done = results.coarsened
         if done is not None:
             self._particle = choices.selected
-            self._shown = polyhedron_verdict(
+            self._shown = assess_polyhedron(
                 done, choices.weights, results.against_particle, results.fewer_facets
             )
         elif results.best is None or choices.selected != self._particle:

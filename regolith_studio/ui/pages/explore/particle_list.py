@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QMenu, QVBoxLayout, QWidget
 
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.table import ParticleTable, particle_columns
 
 COLUMNS = ("name", "group", "volume", "sphericity", "aspect_ratio")
@@ -42,7 +42,7 @@ class ParticleListPanel(QWidget):
         self._selected = ""
         self.title = heading(tr("Particles"))
         self.title.setWordWrap(True)
-        self.hint = remark(tr("Drop mesh files or folders anywhere in the window to open them."))
+        self.hint = hint_label(tr("Drop mesh files or folders anywhere in the window to open them."))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.title)

@@ -94,7 +94,7 @@ class PictureExport(QObject):
             path = Path(name).with_suffix(suffix)
             job = Job(turn, (self._three_views.shapes, self._three_views.views["particle"].pose, path))
             title = tr("Drawing the turntable")
-            self._context.start(title, job, self._saved_note("turntable", path), lane="turntable")
+            self._context.start(title, job, self._saved_note("turntable", path), queue="turntable")
 
     def save_animation(self) -> None:
         """Ask for a file and save an animation of the fit from degree 0 on, in the background."""
@@ -107,7 +107,7 @@ class PictureExport(QObject):
             path = Path(name).with_suffix(suffix)
             job = Job(animate, (entry.particle.mesh, fit, tuple(range(fit.l_max + 1)), path))
             title = tr("Drawing the animation")
-            self._context.start(title, job, self._saved_note("animation", path), lane="animation")
+            self._context.start(title, job, self._saved_note("animation", path), queue="animation")
 
     def _saved_note(self, what: str, path: Path) -> Callable[[object], None]:
         first = path.with_name(f"{path.stem}-000.png") if path.suffix == ".png" and what != "figure" else path

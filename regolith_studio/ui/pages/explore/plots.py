@@ -214,7 +214,7 @@ class LossCurvePanel(QWidget):
         if not history:
             if results.best is None:  # of another particle, or of none
                 self.plot.set_curves([])
-                self.plot.set_remark("")
+                self.plot.set_hint("")
             return
         best = accumulate((loss for _, loss in history), min)
         rows = [(*each, low) for each, low in zip(history, best, strict=True)]
@@ -232,7 +232,7 @@ class LossCurvePanel(QWidget):
         self.plot.set_curves(curves)
         progress = results.coarsening_progress
         running = results.coarsened is None and progress is not None
-        self.plot.set_remark(
+        self.plot.set_hint(
             tr("step {at} of {total}", at=progress.step, total=progress.steps) if running and progress else ""
         )
 
@@ -440,7 +440,7 @@ def _area_text(area: float, whole: float, name: str) -> str:
 
 LINES = 9
 """Minimum height in lines of text."""
-LETTERS = 84
+FONT_SIZE = 84
 """Width in digits below which both groups become one."""
 
 
@@ -465,7 +465,7 @@ class PlotArea(QSplitter):
             self.addWidget(group)
             self.setStretchFactor(number, 1)
         self.setSizes([1000, 1000])
-        self._keep_readable()
+        self._fit_to_font()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -475,15 +475,15 @@ class PlotArea(QSplitter):
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._group()
-            self._keep_readable()
+            self._fit_to_font()
 
-    def _keep_readable(self) -> None:
+    def _fit_to_font(self) -> None:
         for group in (self.left, self.right):
             group.setMinimumHeight(max(120, LINES * self.fontMetrics().height()))
 
     def _group(self) -> None:
         """Show two groups if there is room for two plots with legends, else one."""
-        narrow = self.width() < LETTERS * self.fontMetrics().horizontalAdvance("0")
+        narrow = self.width() < FONT_SIZE * self.fontMetrics().horizontalAdvance("0")
         if narrow == self.right.isHidden():
             return
         shown = (self.left.currentWidget(), self.right.currentWidget())

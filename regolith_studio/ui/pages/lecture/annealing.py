@@ -66,7 +66,7 @@ class AnnealingView(QWidget):
         self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
         self.terms = BarPlot(tr("Term of the loss"), "α ε", tr(WAIT), unit="")
         for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
-            plot.keep_readable()
+            plot.fit_to_font()
             plot.setObjectName(f"annealing_{name}")
         self.frames["annealing"].set_texts(tr("Annealing"))
         self.frames["exact"].set_texts(tr("Exact method"))
@@ -171,12 +171,12 @@ class AnnealingView(QWidget):
             frame.set_texts(tr("Exact method"), tr("being computed …"))
             self.exact_formula.set_lines()
             return
-        veil = SceneShape(FIT, lesson.imitated)
+        overlay = SceneShape(FIT, lesson.approximated)
         solid, centre = exact.polyhedron, exact.centre
 
         def fill(plotter: Any) -> None:
             surfaces.show_polyhedron(plotter, solid, centre, self._theme.surroundings)
-            show_other(plotter, veil, True)
+            show_other(plotter, overlay, True)
             surfaces.set_opacity(plotter, 0.15, OTHER)
 
         frame.view.draw(fill)
@@ -281,4 +281,4 @@ def _outline(lesson: AnnealingLesson) -> FloatArray:
     solids = [placed(lesson.steps[0].polyhedron, lesson.centre)]
     if lesson.exact is not None:
         solids.append(placed(lesson.exact.polyhedron, lesson.exact.centre))
-    return np.vstack([lesson.imitated.vertices, *(each.vertices for each in solids)])
+    return np.vstack([lesson.approximated.vertices, *(each.vertices for each in solids)])

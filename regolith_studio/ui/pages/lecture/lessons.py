@@ -27,7 +27,7 @@ from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 
@@ -107,12 +107,12 @@ class DegreesView(QWidget):
                 make_view(self._kind, self._theme.surroundings), f"degrees_{name}", colour=name
             )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = remark(tr(WAIT), role="")
+        self.sentence = hint_label(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
         self.formula = FormulaLabel(tr("The series with its numbers"))
         self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
-        self.errors.keep_readable()
+        self.errors.fit_to_font()
         self.playback = PlaybackBar("degrees", N_("degree"), self._is_ready)
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
@@ -230,7 +230,7 @@ class FieldView(QWidget):
                 make_view(self._context.views, self._theme.surroundings), f"field_{name}", colour="fit"
             )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = remark("", role="")
+        self.sentence = hint_label("", role="")
         self.sentence.setObjectName("field_sentence")
         self.formula = FormulaLabel(tr("The field with its amplitudes"))
         self.material = ChoiceBox(
@@ -238,7 +238,7 @@ class FieldView(QWidget):
         )
         self.spectrum = SpectrumEditor(tr("No material is chosen."))
         self.spectrum.setObjectName("field_spectrum")
-        self.spectrum.keep_readable()
+        self.spectrum.fit_to_font()
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw again"))
         self.reset.setObjectName("field_reset")
         self.another.setObjectName("field_another")
@@ -274,7 +274,7 @@ class FieldView(QWidget):
             Job(draw_field_later, (self.material.value(), amplitudes, seed)),
             lambda drawn: self._take(drawn, amplitudes, seed),
             failed=lambda failure: self.sentence.setText(failure.sentence),
-            lane="field",
+            queue="field",
             repeats=True,
             after_running=True,
         )

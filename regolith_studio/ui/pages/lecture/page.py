@@ -16,11 +16,11 @@ from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
-from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, letters_share
+from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, font_share
 from regolith_studio.ui.translation import rich, tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
-LETTERS, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
+FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
 """Initial font size relative to other pages; below so many of their lines in height, a smaller one."""
 SMALLEST, LARGEST, STEP = 0.8, 2.4, 1.12
 LESSONS = ("annealing", "degrees", "field")
@@ -34,7 +34,7 @@ class LecturePage(PageWidget):
         self.setObjectName("lecture")
         self._context, self._session = context, context.session
         self._shown_size = 0.0
-        self._letters: float | None = context.recall("letters")
+        self._font_scale: float | None = context.recall("font_size")
         self._made_for: dict[str, tuple[Any, ...]] = {}
         self._seed = 0
 
@@ -49,12 +49,12 @@ class LecturePage(PageWidget):
         self.another = QPushButton(tr("Another seed"))
         self.another.setObjectName("lecture_another")
         self.request = QLabel()
-        self.request.setProperty("role", "remark")
+        self.request.setProperty("role", "hint")
         self._head = (self.particle, self.another, self.request)
         self.tabs = QTabWidget()
         self.tabs.setObjectName("lecture_lessons")
         self._place()
-        self._show_letters()
+        self._show_font_size()
         self.tabs.currentChanged.connect(self._turn)
         self.another.clicked.connect(self.draw_another)
         self.particle.currentIndexChanged.connect(self._select)
@@ -65,7 +65,7 @@ class LecturePage(PageWidget):
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         if self._shown_size not in (0.0, self._size()):  # letters of the whole window have changed
-            self._show_letters()
+            self._show_font_size()
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -73,8 +73,8 @@ class LecturePage(PageWidget):
             "back": lambda: self._control_playback(lambda each: each.go(each.step - 1)),
             "forward": lambda: self._control_playback(lambda each: each.go(each.step + 1)),
             "another": self.draw_another,
-            "larger": partial(self.scale_letters, STEP),
-            "smaller": partial(self.scale_letters, 1 / STEP),
+            "larger": partial(self.scale_font, STEP),
+            "smaller": partial(self.scale_font, 1 / STEP),
             "full_screen": self.toggle_full_screen,
         }
 
@@ -119,11 +119,11 @@ class LecturePage(PageWidget):
             if self._made_for.get("annealing") == before:
                 self._show_absence()
 
-    def scale_letters(self, factor: float) -> None:
+    def scale_font(self, factor: float) -> None:
         """Change the font size, which is remembered."""
-        self._letters = min(max(self._magnification() * factor, SMALLEST), LARGEST)
-        self._context.remember("letters", self._letters)
-        self._show_letters()
+        self._font_scale = min(max(self._magnification() * factor, SMALLEST), LARGEST)
+        self._context.remember("font_size", self._font_scale)
+        self._show_font_size()
 
     def toggle_full_screen(self) -> None:
         """Toggle full screen."""
@@ -163,7 +163,7 @@ class LecturePage(PageWidget):
             return
         self._made_for["annealing"] = wanted
         request = choices.replaced(method="annealing", settings=settings, seed=seed).coarsening_request
-        imitated = (
+        approximated = (
             tr("the fit at l<sub>max</sub> = {degree}", degree=choices.l_max)
             if fitted
             else tr("the particle")
@@ -172,7 +172,7 @@ class LecturePage(PageWidget):
             tr(
                 "{count} planes; target: {imitated}; seed {seed}",
                 count=choices.facet_count,
-                imitated=imitated,
+                imitated=approximated,
                 seed=seed,
             )
         )
@@ -186,7 +186,7 @@ class LecturePage(PageWidget):
             partial=show,
             failed=self._refused,
             stopped=self._stopped,
-            lane="annealing",
+            queue="annealing",
             repeats=True,
         )
 
@@ -206,7 +206,7 @@ class LecturePage(PageWidget):
         show = self.degrees.show_steps
         job = Job(trace_degrees, (entry.particle.mesh, fit))
         self._context.start(
-            tr("Fitting degree by degree"), job, show, partial=show, lane="degrees", repeats=True
+            tr("Fitting degree by degree"), job, show, partial=show, queue="degrees", repeats=True
         )
 
     def _show_particles(self) -> None:
@@ -243,7 +243,7 @@ class LecturePage(PageWidget):
         words = tr("The lesson is still being computed.") if opened else tr("Open a particle first.")
         self._context.toast.note(words)
 
-    def _show_letters(self) -> None:
+    def _show_font_size(self) -> None:
         """Set the font by a style sheet, because the application's overrides fonts of widgets."""
         size = self._size()
         for part in (self.annealing, self.degrees, self.field, self.tabs.tabBar(), *self._head):
@@ -254,17 +254,17 @@ class LecturePage(PageWidget):
 
     def _size(self) -> float:
         """Font size in points; a larger font of the whole window is not enlarged again."""
-        return QGuiApplication.font().pointSizeF() * self._magnification() / min(letters_share(), LETTERS)
+        return QGuiApplication.font().pointSizeF() * self._magnification() / min(font_share(), FONT_SIZE)
 
     def _magnification(self) -> float:
         """As chosen, or such that all formulas of a step are seen."""
         low = self.height() < FEW_LINES * self.fontMetrics().height()
-        return self._letters or (LETTERS_OF_FEW if low else LETTERS)
+        return self._font_scale or (LETTERS_OF_FEW if low else FONT_SIZE)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         if self._shown_size not in (0.0, self._size()):
-            self._show_letters()
+            self._show_font_size()
 
     def _place(self) -> None:
         titles = (tr("Annealing"), tr("Degrees of the fit"), tr("Random field"))

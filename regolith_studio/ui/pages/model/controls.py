@@ -25,7 +25,7 @@ from regolith_studio.shape_models.materials import LOG_FIELD
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.forms import SettingsForm
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
 from regolith_studio.ui.widgets.numbers import DecimalField, NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
@@ -52,7 +52,7 @@ class SourceControls(QWidget):
         self.l_max = NumberSlider(L_MAX)
         self.half = QCheckBox(tr("Fit to a random half only"))
         self.open, self.fit = QPushButton(tr("Open …")), QPushButton(tr("Fit the model"))
-        self.summary, self.findings = remark(), remark()
+        self.summary, self.findings = hint_label(), hint_label()
         self.forms = {key: SettingsForm(model.Settings, without=("l_max",)) for key, model in MODELS.items()}
         self._forms = QStackedWidget()
         self._configure()
@@ -182,7 +182,7 @@ class DrawControls(QWidget):
         self.limited = QCheckBox(tr("Only equivalent radii from … to …"))
         self.smallest, self.largest = DecimalField(), DecimalField()
         self.draw, self.adopt = QPushButton(tr("Draw")), QPushButton(tr("Use as population"))
-        self.findings = remark()
+        self.findings = hint_label()
         self.names = QLineEdit()
         self._names_label = QLabel(tr("Components"))
         self._configure()

@@ -42,8 +42,8 @@ from regolith_studio.studies.population_tables import (
 from regolith_studio.ui.layout import scrolled, tabs
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
-from regolith_studio.ui.widgets.heat_table import centred_remark
-from regolith_studio.ui.widgets.labels import plain_symbol, remark, unbroken, with_subscripts
+from regolith_studio.ui.widgets.heat_table import centred_hint
+from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, unbroken, with_subscripts
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -300,10 +300,10 @@ class EvaluationPanel(QWidget):
         self.all_models = QCheckBox(tr("all models"))
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
-        self.notes = remark()
-        self.verdict = ResultView("model_verdict", (tr("W / noise"), tr("Classifier accuracy")))
+        self.notes = hint_label()
+        self.assessment = ResultView("model_verdict", (tr("W / noise"), tr("Classifier accuracy")))
         for place, tip in enumerate((TIPS[1], TIPS[4])):
-            self.verdict.caption(place, self.verdict.captions[place].text(), tr(tip))
+            self.assessment.caption(place, self.assessment.captions[place].text(), tr(tip))
         self.figures = {name: PanelGrid(name) for name in FIGURES}
         self.places = {name: scrolled(grid) for name, grid in self.figures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
@@ -332,7 +332,7 @@ class EvaluationPanel(QWidget):
         """Enable the start, or show why there are no measured particles."""
         self.frame.start.setText(tr("Evaluate"))
         self.frame.start.setEnabled(not why_not)
-        self.frame.set_remark(why_not)
+        self.frame.set_hint(why_not)
 
     def show_task(self, task: Task | None) -> None:
         """Show the progress of a study, that it is being stopped, or that none is running."""
@@ -363,21 +363,21 @@ class EvaluationPanel(QWidget):
         self.splits.setValue(int(value.get("splits", 5)))
         self.repeats.setValue(int(value.get("repeats", 1)))
 
-    def show_judged(self, judged: ModelEvaluationResult | None) -> None:
+    def show_evaluated(self, evaluated: ModelEvaluationResult | None) -> None:
         """Show a study, complete or not, or nothing."""
         for name, grid in self.figures.items():
-            if judged is not None:
-                grid.set_panels(judged.panels[name], judged.study)
+            if evaluated is not None:
+                grid.set_panels(evaluated.panels[name], evaluated.study)
             at = self.tabs.indexOf(self.places[name])
-            self.tabs.setTabVisible(at, judged is not None and bool(judged.panels[name]))
+            self.tabs.setTabVisible(at, evaluated is not None and bool(evaluated.panels[name]))
         for name, view in self.tables.items():
-            self.tabs.setTabVisible(self.tabs.indexOf(view), judged is not None)
-            if judged is not None:
-                view.show_table(TABLES[name][1](judged.study))
-        self._stack.setCurrentIndex(1 if judged else 0)
-        if judged is None:
+            self.tabs.setTabVisible(self.tabs.indexOf(view), evaluated is not None)
+            if evaluated is not None:
+                view.show_table(TABLES[name][1](evaluated.study))
+        self._stack.setCurrentIndex(1 if evaluated else 0)
+        if evaluated is None:
             return
-        table = ranking_table(judged.study)
+        table = ranking_table(evaluated.study)
         self.ranking.setRowCount(len(table.rows))
         for row, cells in enumerate(table.rows):
             key, near, gap, energy, accuracy, novelty, rejected, _ = cells
@@ -399,7 +399,7 @@ class EvaluationPanel(QWidget):
         self._show_answer(*table.rows[0][:5])
 
     def _show_answer(self, key: Cell, near: Cell, _gap: Cell, _energy: Cell, told: Cell) -> None:
-        """The verdict on the model that is nearest to the sample."""
+        """The assessment on the model that is nearest to the sample."""
         model = tr(MODELS[str(key)].label)
         if float(str(near)) <= NOISE and float(str(told)) <= TOLD_APART:
             sentence = tr("{model}: indistinguishable from the sample in size and form.", model=model)
@@ -410,7 +410,7 @@ class EvaluationPanel(QWidget):
                 near=float(str(near)),
             )
         values = (number_text(float(str(near)), ".2f"), number_text(float(str(told)), ".0%"))
-        self.verdict.show_record(ResultRecord(values, state=ResultState.CURRENT, note=sentence))
+        self.assessment.show_record(ResultRecord(values, state=ResultState.CURRENT, note=sentence))
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -448,11 +448,11 @@ class EvaluationPanel(QWidget):
         filled = QWidget()
         column = QVBoxLayout(filled)
         column.setContentsMargins(8, 6, 8, 6)
-        column.addWidget(self.verdict)
+        column.addWidget(self.assessment)
         column.addWidget(self.ranking, 1)
         column.addWidget(self.notes)
         page = QWidget()
         self._stack = QStackedLayout(page)
-        self._stack.addWidget(centred_remark(tr(WAITING)))
+        self._stack.addWidget(centred_hint(tr(WAITING)))
         self._stack.addWidget(filled)
         return page

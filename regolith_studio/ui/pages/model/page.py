@@ -75,7 +75,7 @@ def save_card(parent: QWidget, context: PageContext, sample: Sample, source: Sha
     template = N_("Statistics of {count} particles of {name}, made by Regolith Studio.")
     origin = Message(template, count=len(sample), name=source.name)
     job = Job(make_card, (sample, key, path.stem, origin))
-    context.start(tr("Making a material card"), job, partial(_write_card, context.toast, path), lane="card")
+    context.start(tr("Making a material card"), job, partial(_write_card, context.toast, path), queue="card")
 
 
 def _json_path(name: str) -> Path:
@@ -144,7 +144,7 @@ class SourceBox:
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                words = " ".join(filter(None, (translate(content.judged), tr(content.origin))))
+                words = " ".join(filter(None, (translate(content.evaluated), tr(content.origin))))
                 return SourceKind(content.key, content.l_max, words)
             case Sample():
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
@@ -231,7 +231,7 @@ class ModelPage(PageWidget):
             "fit_model": self.fit_model,
             "draw": self.draw,
             "another": self.another,
-            "judge": self.judge,
+            "judge": self.evaluate,
             "adopt": self.adopt,
             "save_model": self.save_model,
             "save_card": self.save_card,
@@ -288,9 +288,9 @@ class ModelPage(PageWidget):
         self._live_seed += 1
         self._request_live(again=True)
 
-    def judge(self) -> None:
+    def evaluate(self) -> None:
         """Evaluate the selected model, or all."""
-        self._try(self._judge)
+        self._try(self._evaluate)
 
     def adopt(self) -> None:
         """Replace the open particles by the drawn ones."""
@@ -311,7 +311,7 @@ class ModelPage(PageWidget):
         origin = VirtualSource.of(self._drawn, self._fitted, POPULATION_LEVEL)
         job = Job(make_particles, (draws, self._drawn.model, origin.population.name, POPULATION_LEVEL))
         self._context.start(
-            tr("Making virtual particles"), job, lambda made: self._take_over(made, origin), lane="adopt"
+            tr("Making virtual particles"), job, lambda made: self._take_over(made, origin), queue="adopt"
         )
 
     def save_model(self) -> None:
@@ -340,7 +340,7 @@ class ModelPage(PageWidget):
             self._show_fitted(fitted)
             then()
 
-        self._context.start(tr("Fitting a model of shapes"), job, show, lane="fit")
+        self._context.start(tr("Fitting a model of shapes"), job, show, queue="fit")
 
     def _to_fit(self) -> tuple[object, ...]:
         """What a fit depends on; drawn particles that are open count as those that they were drawn from."""
@@ -359,9 +359,9 @@ class ModelPage(PageWidget):
 
     def _draw_fitted(self) -> None:
         job = Job(draw_shapes, (self._model, self._request()))
-        self._context.start(tr("Drawing particles"), job, self._show_drawn, lane="draw")
+        self._context.start(tr("Drawing particles"), job, self._show_drawn, queue="draw")
 
-    def _judge(self) -> None:
+    def _evaluate(self) -> None:
         sample = self._sample()
         if sample is None:
             raise InputError(tr("Models are evaluated on measured particles: fit one to a sample first."))
@@ -375,8 +375,8 @@ class ModelPage(PageWidget):
             "seed": request.seed,
         }
         job = Job(evaluate_models, (sample, None if chosen["all_models"] else (key,)), options)
-        show = self.evaluation.show_judged
-        self._context.start(tr("Evaluating models"), job, show, partial=show, lane=JUDGE)
+        show = self.evaluation.show_evaluated
+        self._context.start(tr("Evaluating models"), job, show, partial=show, queue=JUDGE)
 
     def _request(self) -> GenerationRequest:
         return request_from(self.source.value(), self.drawing.value(), self._brings())
@@ -395,7 +395,7 @@ class ModelPage(PageWidget):
         self.gallery.show_shapes(fitted.examples, ())
         self._context.stop("compare")
         self.distributions.show_compared(None)
-        self.evaluation.show_judged(None)
+        self.evaluation.show_evaluated(None)
         self._show_state()
         self.drawing.show_names(getattr(model, "names", ()))
         if (sizes := usual_sizes(fitted.source)) is not None:
@@ -415,7 +415,7 @@ class ModelPage(PageWidget):
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws, drawn.request.size_range))
         show = self.distributions.show_compared
-        self._context.start(tr("Comparing distributions"), job, show, lane="compare", repeats=True)
+        self._context.start(tr("Comparing distributions"), job, show, queue="compare", repeats=True)
         self._show_state()
 
     def _request_live(self, again: bool = False) -> None:
@@ -429,7 +429,7 @@ class ModelPage(PageWidget):
             Job(draw_live, (self._model, self._live_seed)),
             lambda mesh: self._show_live(fitted, mesh, again),
             failed=lambda failure: self.live.frame.set_texts(tr(DRAWN), failure.sentence),
-            lane="live",
+            queue="live",
             repeats=True,
             after_running=True,
         )
@@ -477,8 +477,8 @@ class ModelPage(PageWidget):
         self.evaluation.set_ready("" if self._sample() else missing)
 
     def _show_tasks(self) -> None:
-        lane = f"{self._context.key}:{JUDGE}"
-        running = next((task for task in self._context.session.tasks if task.lane == lane), None)
+        queue = f"{self._context.key}:{JUDGE}"
+        running = next((task for task in self._context.session.tasks if task.queue == queue), None)
         self.evaluation.show_task(running)
 
     def _sample(self) -> Sample | None:
@@ -522,5 +522,5 @@ class ModelPage(PageWidget):
         self.live.spectrum.valueChanged.connect(self._edit)
         self.live.reset.clicked.connect(self.live.spectrum.reset)
         self.live.another.clicked.connect(self.another)
-        self.evaluation.startRequested.connect(self.judge)
+        self.evaluation.startRequested.connect(self.evaluate)
         self.evaluation.cancelRequested.connect(self._context.session.cancel)

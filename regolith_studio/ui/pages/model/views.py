@@ -43,7 +43,7 @@ class DistributionsPanel(QWidget):
             "model_distribution_weighting", tr("Weighting of the particles"), WEIGHTINGS
         )
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
-        self.words, self.verdict = ElidedLabel(role="remark"), ElidedLabel(role="remark")
+        self.words, self.assessment = ElidedLabel(role="hint"), ElidedLabel(role="hint")
         self.table = StudyTableView("model_draws_in_noise", tr("Distances of the draws"))
         self.weighting.setMinimumContentsLength(26)
         self._compared: DistributionComparison | None = None
@@ -56,7 +56,7 @@ class DistributionsPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(row)
-        for label in (self.words, self.verdict):
+        for label in (self.words, self.assessment):
             below = QHBoxLayout()
             below.setContentsMargins(8, 0, 8, 0)
             below.addWidget(label)
@@ -72,7 +72,7 @@ class DistributionsPanel(QWidget):
         """Draw other distributions, or none."""
         self._compared = compared = compared if compared is not None and len(compared.drawn) else None
         measured = compared is not None and len(compared.measured) > 0
-        self.verdict.setText(translate(compared.verdict()) if compared is not None and measured else "")
+        self.assessment.setText(translate(compared.assessment()) if compared is not None and measured else "")
         comparable = compared is not None and compared.comparable
         self.table.setVisible(comparable)
         if compared is not None and comparable:

@@ -24,7 +24,7 @@ class RunController:
     ----------
     card
         Its button starts what `start` does, and stops the job.
-    lane
+    queue
         Of the job.
     warning
         What closing the window would interrupt.
@@ -40,13 +40,13 @@ class RunController:
         self,
         context: PageContext,
         card: ResultView,
-        lane: str,
+        queue: str,
         warning: str,
         stopped: str,
         start: Callable[[], object],
         changed: Callable[[bool], object],
     ) -> None:
-        self._context, self._card, self._lane = context, card, lane
+        self._context, self._card, self._queue = context, card, queue
         self._warning, self._stop_note, self._changed = warning, stopped, changed
         self._task, self.running = 0, False
         card.startRequested.connect(start)
@@ -85,7 +85,7 @@ class RunController:
             partial=lambda result: self._show(show(result), ResultState.RUNNING),
             failed=self._fail,
             stopped=self._stop,
-            lane=self._lane,
+            queue=self._queue,
         )
 
     def stop(self) -> None:

@@ -13,7 +13,7 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.ui.pages.repose.limits import CaseScale
 from regolith_studio.ui.pages.repose.section_plot import HeapSection, SectionPlot
 from regolith_studio.ui.translation import localized, tr, translate
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState
 
 
@@ -29,7 +29,7 @@ class HeapSections(QWidget):
         self.plot = SectionPlot()
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
-        self._label = remark(tr("Section"))
+        self._label = hint_label(tr("Section"))
         self._label.setWordWrap(False)
         row.addWidget(self._label)
         row.addWidget(self.azimuth)

@@ -216,7 +216,7 @@ class ReposePage(PageWidget):
         options = DatasetOptions(name=N_("open particles"), preset=session.choices.preset, overwrite=True)
         job = Job(build_dataset_folder, (particles, session.choices.coarsening_request, folder, options))
         self._context.start(
-            tr("Building a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
+            tr("Building a dataset"), job, lambda built: self.setup.set_dataset(built.folder), queue=BUILD
         )
 
     def run_or_build(self) -> None:
@@ -335,7 +335,7 @@ class ReposePage(PageWidget):
         name = FolderDialog.ask(self, tr("Export for ParaView and OVITO"))
         if name:
             job = Job(repose_export_steps, (self._shown_run, Path(name)))
-            self._context.start(tr("Exporting the run"), job, self._exported, lane=EXPORT)
+            self._context.start(tr("Exporting the run"), job, self._exported, queue=EXPORT)
 
     def _exported(self, export: ReposeExport) -> None:
         self._context.toast.note(
@@ -397,7 +397,7 @@ class ReposePage(PageWidget):
             job,
             show,
             failed=lambda each: self._refuse(each.sentence),
-            lane=PREVIEW,
+            queue=PREVIEW,
             repeats=True,
         )
 
@@ -522,7 +522,7 @@ class ReposePage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._context.start(tr("Measuring the heap"), job, self._show_measurement, lane=MEASURE)
+        self._context.start(tr("Measuring the heap"), job, self._show_measurement, queue=MEASURE)
 
     def _show_measurement(self, measured: ReposeMeasurement | NotAPileError) -> None:
         if self._pile is None:

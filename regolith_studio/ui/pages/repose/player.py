@@ -58,7 +58,7 @@ class RunPlayer(QWidget):
         self.button = QPushButton(tr("Play"))
         self.button.setObjectName("repose_play")
         self.clock = QLabel()
-        self.clock.setProperty("role", "remark")
+        self.clock.setProperty("role", "hint")
         self.clock.setMinimumWidth(110)
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME)

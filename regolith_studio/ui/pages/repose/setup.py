@@ -28,7 +28,7 @@ from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.forms import SettingsForm
-from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
+from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
 from regolith_studio.ui.widgets.presets import PresetForm
 from regolith_studio.ui.widgets.text_table import TextTable
 
@@ -85,9 +85,9 @@ class SetupPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "contact", tr("Published contact parameters"))
         self.evaluation = SettingsForm(EvaluationSettings)
         self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
-        self.scaling_report = remark()
+        self.scaling_report = hint_label()
         self.scaling_report.setObjectName("repose_consequences")
-        self.problem = remark(role="warning")
+        self.problem = hint_label(role="warning")
         self.problem.hide()
         self._place()
         self._connect()
@@ -219,7 +219,7 @@ class SetupPanel(QWidget):
             Collapsible(tr("Contact"), self.contact),
             Collapsible(tr("Evaluation of the heap"), self.evaluation),
             Collapsible(tr("Numerics of the engine"), *self._numerics.values()),
-            remark(tr("* not given in the paper: an assumption that can be changed")),
+            hint_label(tr("* not given in the paper: an assumption that can be changed")),
         )
         row = QHBoxLayout(self)
         row.setSpacing(24)

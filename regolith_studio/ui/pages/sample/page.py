@@ -35,7 +35,7 @@ from regolith_studio.ui.translation import rich, tr, with_decimal_point
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
 from regolith_studio.ui.widgets.table import FORM_WORDS, HEALTH_WORDS, ParticleTable, particle_columns
 
 
@@ -58,8 +58,8 @@ class SamplePage(PageWidget):
         self.filter.setAccessibleName(tr("Filter of the table"))
         self.filter.setPlaceholderText(tr("Filter: words and comparisons, such as  flat S<0.8 AR>1.5"))
         self.filter.setClearButtonEnabled(True)
-        self.verdict = remark(role="warning")
-        self.verdict.hide()
+        self.assessment = hint_label(role="warning")
+        self.assessment.hide()
         self.table = ParticleTable(particle_columns())
         self.table.setObjectName("sample_table")
         self.table.setAccessibleName(tr("All particles"))
@@ -129,7 +129,7 @@ class SamplePage(PageWidget):
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(10, 10, 2, 8)
-        for widget in (self.title, self.filter, FixedHeightText((self.verdict,), 1)):
+        for widget in (self.title, self.filter, FixedHeightText((self.assessment,), 1)):
             column.addWidget(widget)
         self.reports = tabs(
             "sample_tabs", [(self.health, tr("Health of the mesh")), (self.statistics, tr("Statistics"))]
@@ -158,10 +158,10 @@ class SamplePage(PageWidget):
         try:
             keeps = filter_of(in_english(with_decimal_point(text))) if text.strip() else None
         except RegolithError as error:
-            self.verdict.setText(str(error))
-            self.verdict.show()
+            self.assessment.setText(str(error))
+            self.assessment.show()
             return
-        self.verdict.hide()
+        self.assessment.hide()
         self.table.set_filter(keeps)
         self._count()
 
@@ -208,7 +208,7 @@ class SamplePage(PageWidget):
             if entry.health is None:
                 return
             job = Job(find_faults, (entry.particle, entry.visibility))
-            self._context.start(tr("Checking the mesh"), job, self._take_faults, lane="faults", repeats=True)
+            self._context.start(tr("Checking the mesh"), job, self._take_faults, queue="faults", repeats=True)
 
     def _take_faults(self, found: dict[str, FloatArray]) -> None:
         self._faults = found

@@ -123,7 +123,7 @@ class ScatterPanel(QWidget):
         ]
         self.plot.set_legend(named if len(groups) > 1 else [])
         count = len(self._entries)
-        self.plot.set_remark(tr_count(N_("1 particle"), N_("{count} particles"), count))
+        self.plot.set_hint(tr_count(N_("1 particle"), N_("{count} particles"), count))
         canvas.enableAutoRange()
         self._place_zingg()
 

@@ -34,7 +34,7 @@ from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import number_text, tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.forms import SettingsForm, form_layout
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
 from regolith_studio.ui.widgets.numbers import DecimalField
 
 CLASSIFIER = {"classifier": N_("Classifier from examples")}
@@ -85,7 +85,7 @@ class SegmentationControls(QWidget):
         self.draw_box.setObjectName("draw_region")
         self.draw_box.setCheckable(True)
         self.draw_box.setToolTip(tr("Draw a box in a slice; what is outside of it is left out."))
-        self.diameter, self.region_error, self.heights = remark(), remark(), remark()
+        self.diameter, self.region_error, self.heights = hint_label(), hint_label(), hint_label()
         self.region_fold = Collapsible(
             tr("Region of interest"), self.region, self.draw_box, self.region_error
         )

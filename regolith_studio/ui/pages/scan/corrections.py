@@ -94,7 +94,7 @@ class Corrections(QObject):
         self._context, self._objects, self._edits, self._slices = context, objects, edits, slices
         self._history: History[CorrectionState] = History(CorrectionState())
         self._clicks: tuple[Voxel, ...] = ()
-        self._mended: LabelEdit | None = None
+        self._repaired: LabelEdit | None = None
         self._grey: Volume | None = None
         self._base: GrainSegmentation | None = None
         self._found_with = SegmentationSettings()
@@ -159,8 +159,8 @@ class Corrections(QObject):
 
     def discard(self) -> None:
         """Forget the grains, but neither examples nor edits."""
-        for lane in ("describe", "classify", "correct"):
-            self._context.stop(lane)
+        for queue in ("describe", "classify", "correct"):
+            self._context.stop(queue)
         self._close_corrected()
         if self._base is not None:
             self._base.scratch.close()
@@ -177,13 +177,13 @@ class Corrections(QObject):
 
     def undo(self) -> None:
         """Take the last step back."""
-        self._clicks, self._mended = (), None
+        self._clicks, self._repaired = (), None
         self._history.undo()
         self._refresh()
 
     def redo(self) -> None:
         """Take it again."""
-        self._mended = None
+        self._repaired = None
         self._history.redo()
         self._refresh()
 
@@ -196,7 +196,7 @@ class Corrections(QObject):
         training = self._training()
         if training is not None:
             job = Job(save_objects, (path, training, scan))
-            self._context.start(tr("Saving the classifier"), job, done, lane="classifier")
+            self._context.start(tr("Saving the classifier"), job, done, queue="classifier")
 
     # --- steps ---------------------------------------------------------------------------------
 
@@ -207,7 +207,7 @@ class Corrections(QObject):
         return replace(loaded, actions=self.state.actions) if loaded is not None else None
 
     def _push(self, state: CorrectionState) -> None:
-        self._mended = None
+        self._repaired = None
         self._history.push(state)
         self._refresh()
 
@@ -222,11 +222,11 @@ class Corrections(QObject):
         needs_table = self._objects.mark.isChecked() or self.state.examples or self.state.applied
         if needs_table and self._table is None:
             job = Job(describe_grains, (self._grey, self._base.segmentation))
-            self._context.start(tr("Describing objects"), job, self._take_table, lane="describe")
+            self._context.start(tr("Describing objects"), job, self._take_table, queue="describe")
         elif self.state.examples and self._table is not None:
             labels = self._base.segmentation.labels
             job = Job(classify_grains, (self._table, labels, self.state.examples, self.state.actions))
-            self._context.start(tr("Classifying objects"), job, self._take_classes, lane="classify")
+            self._context.start(tr("Classifying objects"), job, self._take_classes, queue="classify")
         else:
             self.classified = None
             self._correct()
@@ -250,7 +250,7 @@ class Corrections(QObject):
             return
         job = Job(correct_grains, (self._grey, self._base.segmentation, settings, self._table))
         self._context.start(
-            tr("Correcting labels"), job, self._take_corrected, failed=self._on_failed, lane="correct"
+            tr("Correcting labels"), job, self._take_corrected, failed=self._on_failed, queue="correct"
         )
 
     def _take_corrected(self, made: GrainSegmentation) -> None:
@@ -321,7 +321,7 @@ class Corrections(QObject):
             self._context.toast.problem(str(error))
             return
         self._push(replace(self.state, edits=(*self.state.edits, edit)))
-        self._mended = edit
+        self._repaired = edit
 
     def _set_tool(self, kind: str) -> None:
         self._clicks = ()
@@ -356,17 +356,17 @@ class Corrections(QObject):
             self._slices.show_segmentation(self._base.segmentation, self._base.sections, self._colours())
         else:
             self._slices.show_segmentation(self._corrected.segmentation, self._corrected.sections)
-        self._slices.highlight(self._mended_labels())
+        self._slices.highlight(self._repaired_labels())
         self._show_panels()
         self.changed.emit()
 
-    def _mended_labels(self) -> set[int]:
+    def _repaired_labels(self) -> set[int]:
         """Labels of the grains along the line of the last correction, and at its points."""
-        if self._mended is None or self._corrected is None:
+        if self._repaired is None or self._corrected is None:
             return set()
         labels = self._corrected.segmentation.labels.array
-        points = np.array(self._mended.points)
-        if self._mended.kind == "cut":
+        points = np.array(self._repaired.points)
+        if self._repaired.kind == "cut":
             line = np.rint(np.linspace(points[0], points[-1], _SAMPLES)).astype(np.int64)
             points = np.concatenate([line + step for step in _BESIDE])
         inside = points[((points >= 0) & (points < labels.shape)).all(axis=1)]

@@ -123,7 +123,7 @@ class VolumeOpening(QObject):
         gaps = self._gaps(path)
         job = Job(read_header, (VolumeInput(path, allow_gaps=bool(gaps)),))
         self._context.start(
-            tr("Inspecting the volume"), job, lambda header: self._on_header(path, header, gaps), lane="read"
+            tr("Inspecting the volume"), job, lambda header: self._on_header(path, header, gaps), queue="read"
         )
 
     def open_sample(self) -> None:
@@ -143,7 +143,7 @@ class VolumeOpening(QObject):
         if volume.path == sample_file("grey"):
             job, title = Job(read_sample_scan, ("grey", region)), tr("Reading the sample scan")
         self._context.start(
-            title, job, lambda scan: self._take(scan, volume, region), partial=self._look, lane="read"
+            title, job, lambda scan: self._take(scan, volume, region), partial=self._look, queue="read"
         )
 
     def state(self) -> dict[str, Any]:
@@ -282,7 +282,7 @@ class ParticleMaking(QObject):
             self._context.toast.note(words)
 
         job = Job(write_labels, (grains.labels, settings.extraction, path, True))
-        self._context.start(tr("Saving labels"), job, written, lane="grains")
+        self._context.start(tr("Saving labels"), job, written, queue="grains")
 
     def make_particles(self, grains: Segmentation | None, settings: GrainSettings) -> None:
         """Convert the grains, or the labels of the scan, to particles and open them.
@@ -303,7 +303,7 @@ class ParticleMaking(QObject):
         grey = scan.volume if scan.volume.kind == "grey" else None
         job = Job(extract_labels, (labels, settings.extraction, self._opening.given.path, grey))
         self._context.start(
-            tr("Making particles"), job, lambda found: self._adopt(found, entry), lane="grains"
+            tr("Making particles"), job, lambda found: self._adopt(found, entry), queue="grains"
         )
 
     def _adopt(self, extraction: Extraction, entry: VolumeEntry) -> None:

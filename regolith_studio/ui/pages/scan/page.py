@@ -77,8 +77,8 @@ class FramePreview(QObject):
         self.found = None
 
     def _stop_jobs(self) -> None:
-        for lane in ("preview", "heights"):
-            self._context.stop(lane)
+        for queue in ("preview", "heights"):
+            self._context.stop(queue)
 
     def _start(self) -> None:
         if self._scan is None:
@@ -92,7 +92,7 @@ class FramePreview(QObject):
             lambda found: self._take(found, scan, settings, box),
             failed=self._fail,
             stopped=self._end,
-            lane="preview",
+            queue="preview",
             repeats=True,
         )
 
@@ -118,7 +118,7 @@ class FramePreview(QObject):
             )
             job = Job(preview_heights, arguments)
             self._context.start(
-                tr("Grains at other h"), job, self._controls.show_heights, lane="heights", repeats=True
+                tr("Grains at other h"), job, self._controls.show_heights, queue="heights", repeats=True
             )
 
 
@@ -225,7 +225,7 @@ class ScanPage(PageWidget):
             lambda found: self._show_grains(found, settings),
             failed=self._find_nothing,
             stopped=self._schedule_preview,
-            lane="grains",
+            queue="grains",
         )
 
     def save_settings(self) -> None:
@@ -330,7 +330,7 @@ class ScanPage(PageWidget):
         """Contour labels in the background for the view of all grains."""
         show = self.slices.show_surface
         job = Job(view_labels, (labels,))
-        self._context.start(tr("Drawing grains"), job, lambda made: show(labels, made), lane="surface")
+        self._context.start(tr("Drawing grains"), job, lambda made: show(labels, made), queue="surface")
 
     def _schedule_preview(self) -> None:
         if self.grains is None:
@@ -345,8 +345,8 @@ class ScanPage(PageWidget):
 
     def _stop_work(self) -> None:
         self.preview.stop()
-        for lane in ("grains", "surface"):
-            self._context.stop(lane)
+        for queue in ("grains", "surface"):
+            self._context.stop(queue)
 
     # --- the level in the histogram ------------------------------------------------------------
 

@@ -44,7 +44,7 @@ class Painting(QObject):
         self.training: TrainingSet | None = None
         panel.paintingChanged.connect(self._set_painting)
         panel.overlayChanged.connect(slices.set_overlay)
-        panel.featuresChanged.connect(self._see_anew)
+        panel.featuresChanged.connect(self._retrain)
         panel.undoRequested.connect(self.undo)
         panel.clearRequested.connect(lambda: self._push(()))
         slices.strokeDrawn.connect(self._add)
@@ -91,14 +91,14 @@ class Painting(QObject):
         given = VolumeInput(path, tuple(self._volume.voxel_size.tolist()), kind="labels")
         job = Job(read_strokes, (given, self._volume, len(CLASSES), region))
         self._context.start(
-            tr("Reading labels"), job, lambda found: self._push((*self.strokes, *found)), lane="labels"
+            tr("Reading labels"), job, lambda found: self._push((*self.strokes, *found)), queue="labels"
         )
 
     def save(self, path: Path, scan: Path, done: Callable[[Path], None]) -> None:
         """Write the classifier, and call `done` with its path."""
         if self.training is not None:
             job = Job(save_classifier, (path, self.training, scan))
-            self._context.start(tr("Saving the classifier"), job, done, lane="classifier")
+            self._context.start(tr("Saving the classifier"), job, done, queue="classifier")
 
     def stop(self) -> None:
         """Stop training and predicting."""
@@ -123,7 +123,7 @@ class Painting(QObject):
         self._history.push(strokes)
         self._learn()
 
-    def _see_anew(self) -> None:
+    def _retrain(self) -> None:
         """Train again on the same strokes with other features."""
         self._vectors = {}
         if self.strokes:
@@ -137,7 +137,7 @@ class Painting(QObject):
         self._context.stop("predict")
         settings = ClassifierSettings(self._panel.features)
         arguments = (self._volume, self.strokes, self._vectors, CLASSES, settings)
-        self._context.start(tr("Training"), Job(train_on_strokes, arguments), self._take, lane="train")
+        self._context.start(tr("Training"), Job(train_on_strokes, arguments), self._take, queue="train")
         self._show_panel("")
 
     def _take(self, found: TrainedStrokes) -> None:
@@ -154,7 +154,7 @@ class Painting(QObject):
             return
         job = Job(predict_slices, (self._volume, self._slices.position, self.training))
         show = self._slices.show_predictions
-        self._context.start(tr("Predicting"), job, show, partial=show, lane="predict", repeats=True)
+        self._context.start(tr("Predicting"), job, show, partial=show, queue="predict", repeats=True)
 
     def _show(self) -> None:
         self._slices.show_strokes(*painted_rows(self.strokes)[:2])

@@ -28,7 +28,7 @@ from regolith_studio.ui.translation import number_text, tr, tr_count
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 from regolith_studio.ui.widgets.plots.curves import plain_decades
 
@@ -436,7 +436,7 @@ class SlicesView(QWidget):
         page = equal_parts(Qt.Orientation.Vertical, [above, below])
         hint = QWidget()
         column_of_words = QVBoxLayout(hint)
-        words = remark(
+        words = hint_label(
             tr(
                 "Open a CT volume: TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, "
                 "MetaImage, NIfTI, NPY, raw, or the header of a scanner. Drop it here, or begin with the "

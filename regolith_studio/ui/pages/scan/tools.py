@@ -33,7 +33,7 @@ from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
 
 CLASSES = (
@@ -121,7 +121,7 @@ class BrushPanel(QWidget):
         )
         self.browse = button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
         self.save = button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))
-        self.state = remark()
+        self.state = hint_label()
         for number, colour in enumerate(CLASS_COLOURS):
             self.kind.setItemIcon(number, swatch(colour))
         self.kind.setCurrentIndex(1)
@@ -274,7 +274,7 @@ class ObjectsPanel(QWidget):
         self.clear = button("objects_clear", tr("Clear"), tr("Remove all examples"))
         self.browse = button("objects_open", tr("Open …"), tr("Open an object classifier and apply it"))
         self.save = button("objects_save", tr("Save …"), tr("Save the object classifier for other scans"))
-        self.state = remark()
+        self.state = hint_label()
         self._arrange()
         self._connect()
         self.set_state(found=False, trained=False, applied=False, can_undo=False)
@@ -397,7 +397,7 @@ class EditsPanel(QWidget):
         self.diameter = NumberSlider(BALL_SIZE)
         self.diameter.field.setObjectName("edit_size")
         self.diameter.setValue(6)
-        self.hint = remark()
+        self.hint = hint_label()
         self.list = QListWidget()
         self.list.setAccessibleName(tr("Corrections so far"))
         self.list.setMinimumHeight(120)

@@ -23,7 +23,7 @@ from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import inert, tr, translate
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.numbers import DecimalField
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
@@ -88,7 +88,7 @@ class VolumeDialog(QDialog):
         self.allow_gaps = QCheckBox()
         self.allow_gaps.setObjectName("allow_gaps")
         self._said = tr("A raw file has no header. Enter the number of voxels and their type.")
-        self.verdict, self.facts = remark(), remark()
+        self.assessment, self.facts = hint_label(), hint_label()
         self._buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
@@ -185,7 +185,7 @@ class VolumeDialog(QDialog):
             words = tr("The file has {count:,} bytes more than that.", count=there - needed)
         else:
             words = tr("The file is {count:,} bytes too short for that.", count=needed - there)
-        self.verdict.setText(words)
+        self.assessment.setText(words)
         self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(needed <= there)
 
     def _check_gaps(self) -> None:
@@ -205,7 +205,7 @@ class VolumeDialog(QDialog):
             form.addRow(tr("Type"), self.dtype)
             form.addRow(tr("Byte order"), self.order)
             form.addRow(tr("Bytes before"), self.offset)
-            form.addRow(self.verdict)
+            form.addRow(self.assessment)
         elif len(header.datasets) > 1:
             form.addRow(tr("Volume"), self.dataset)
         if header is not None and header.format in WITH_AXES:

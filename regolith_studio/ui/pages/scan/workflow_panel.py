@@ -87,7 +87,7 @@ class WorkflowPanel(QWidget):
         self.save.setEnabled(grains is not None)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
         self.show_them.hide()
-        outside = "" if scan is None or scan.outside is None else translate(scan.outside.remark)
+        outside = "" if scan is None or scan.outside is None else translate(scan.outside.hint_label)
         self.volume.setText(
             _sentences(_about(scan.volume.name, scan.volume), outside) if scan else tr("No volume is open.")
         )
@@ -172,5 +172,5 @@ def _about(name: str, volume: Volume | FirstLook) -> str:
 def _words() -> WrappedLabel:
     """A label for the result of a step, with all lines visible."""
     label = WrappedLabel()
-    label.setProperty("role", "remark")
+    label.setProperty("role", "hint")
     return label

@@ -21,12 +21,12 @@ from regolith_studio.jobs.study_jobs import GalleryCell
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr
-from regolith_studio.ui.widgets.heat_table import centred_remark
+from regolith_studio.ui.widgets.heat_table import centred_hint
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
 SIZE = 120
-LETTERS = 22
+FONT_SIZE = 22
 """Pixels below a picture."""
 WAITING = N_("The polyhedra of six particles, one row per loss function.")
 Index = QModelIndex | QPersistentModelIndex
@@ -50,17 +50,17 @@ class GalleryPanel(QWidget):
         self.table.setItemDelegate(_PictureAbove(self.table))
         self.table.setIconSize(self.table.iconSize().expandedTo(picture_size()))
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.table.verticalHeader().setDefaultSectionSize(SIZE + LETTERS)
+        self.table.verticalHeader().setDefaultSectionSize(SIZE + FONT_SIZE)
         self.table.verticalHeader().setMaximumWidth(190)
         self.table.verticalHeader().setDefaultAlignment(
             Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextWordWrap
         )
         self._parts = QWidget()
         self._stack = QStackedLayout(self._parts)
-        self._stack.addWidget(centred_remark(tr(WAITING)))
+        self._stack.addWidget(centred_hint(tr(WAITING)))
         self._stack.addWidget(self.table)
         self.frame = StudyFrame("solids", self._parts)
-        self.frame.set_remark(tr("for the particle on screen and those after it, one row per loss function"))
+        self.frame.set_hint(tr("for the particle on screen and those after it, one row per loss function"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame, 1)

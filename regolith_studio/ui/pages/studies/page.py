@@ -86,7 +86,7 @@ class SweepController:
         job = Job(study_coarsening, (particles, choices.coarsening_request), options)
         self._made[key] = choices
         take = partial(self._take, key)
-        self._context.start(title, job, partial(self._end, key), partial=take, lane=key)
+        self._context.start(title, job, partial(self._end, key), partial=take, queue=key)
 
     def _take(self, key: str, study: CoarseningStudy) -> None:
         """Keep a partial result, which is drawn at the next refresh."""
@@ -111,8 +111,8 @@ class SweepController:
     def _refresh(self) -> None:
         self._bar.show_facets(self._session.choices)
         for key, panel in self._panels.items():
-            lane = f"{self._context.key}:{key}"
-            panel.frame.show_task(next((task for task in self._session.tasks if task.lane == lane), None))
+            queue = f"{self._context.key}:{key}"
+            panel.frame.show_task(next((task for task in self._session.tasks if task.queue == queue), None))
             panel.show_method(self._session.choices.method)
             study = self._results.get(key)
             state = (study, study is not None and self._is_outdated(key))
@@ -225,7 +225,7 @@ class StudiesPage(PageWidget):
             (tuple(entry.particle for entry in shown), self._session.choices.coarsening_request, rows),
         )
         show = self.gallery.show_cells
-        self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, lane="gallery")
+        self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, queue="gallery")
 
     def save(self) -> None:
         """Ask for a folder and write tables and figures of all results."""
@@ -243,7 +243,7 @@ class StudiesPage(PageWidget):
             return
         self._context.remember("folder", name)
         job = Job(write_studies, (done, Path(name)))
-        self._context.start(tr("Writing figures"), job, self._report_written, lane="save")
+        self._context.start(tr("Writing figures"), job, self._report_written, queue="save")
 
     def _report_written(self, paths: tuple[Path, ...]) -> None:
         listed = "\n".join(str(path) for path in paths)
@@ -258,7 +258,7 @@ class StudiesPage(PageWidget):
             panel.show_study(getattr(session.results, kind.value), kind.value in session.results.outdated)
 
         def tasks() -> None:
-            panel.frame.show_task(next((task for task in session.tasks if task.lane == kind), None))
+            panel.frame.show_task(next((task for task in session.tasks if task.queue == kind), None))
 
         panel.frame.startRequested.connect(partial(self.start, kind))
         panel.frame.cancelRequested.connect(session.cancel)
@@ -270,7 +270,7 @@ class StudiesPage(PageWidget):
         self.lmax_study.show_l_max(self._session.choices.l_max)
 
     def _show_gallery_task(self) -> None:
-        mine = [task for task in self._session.tasks if task.lane == f"{self._context.key}:gallery"]
+        mine = [task for task in self._session.tasks if task.queue == f"{self._context.key}:gallery"]
         self.gallery.frame.show_task(mine[0] if mine else None)
 
     def _name_gallery_button(self) -> None:

@@ -20,8 +20,8 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.heat_table import (
     HeatTable,
-    centred_remark,
-    keep_legible,
+    centred_hint,
+    fit_to_font,
     numbers_table,
     set_head_tips,
 )
@@ -151,7 +151,7 @@ class SensitivityTable(QWidget):
         self.table.setWordWrap(False)
         self._rows = FontRowHeight(self.table, 10)
         self._stack = QStackedLayout(self)
-        self._stack.addWidget(centred_remark(placeholder))
+        self._stack.addWidget(centred_hint(placeholder))
         self._stack.addWidget(self.table)
 
     def show_study(self, study: CoarseningStudy | None) -> None:
@@ -167,7 +167,7 @@ class SensitivityTable(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        keep_legible(self.table, self.width(), self._rows, 1)
+        fit_to_font(self.table, self.width(), self._rows, 1)
 
     def _fill(self) -> None:
         study = self._study
@@ -208,7 +208,7 @@ class SensitivityTable(QWidget):
                     + ("" if sure[r, k] else "\n" + tr("Not significant."))
                 )
                 self.table.setItem(r, k, item)
-        keep_legible(self.table, self.width(), self._rows, 1)
+        fit_to_font(self.table, self.width(), self._rows, 1)
 
     def _ground(self, share: float) -> QColor:
         colour = QColor(self._theme.bad if share > 0 else self._theme.fit)
@@ -239,7 +239,7 @@ class LmaxStudyPanel(QWidget):
         self._study = study
         if study is None:
             self.plot.set_curves([])
-            self.frame.set_remark("")
+            self.frame.set_hint("")
             self._answer()
             return
         values = 100.0 * np.asarray(study.rmsre())
@@ -257,7 +257,7 @@ class LmaxStudyPanel(QWidget):
         self.plot.set_curves(curves)
         self.plot.legend.setToolTip("\n".join(map(definition, study.keys)))
         count = tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))
-        self.frame.set_remark(count + "; " + tr("computed with other choices") if outdated else count)
+        self.frame.set_hint(count + "; " + tr("computed with other choices") if outdated else count)
         self._answer()
 
     def show_l_max(self, l_max: int) -> None:
@@ -318,7 +318,7 @@ class CoarseningStudyPanel(QWidget):
         if study is None or not study.names:
             self._study = None
             self.table.set_values([], HEADERS, [])
-            self.frame.set_remark("")
+            self.frame.set_hint("")
             return
         self._study = study
         labels, ends = [translate(row.label) for row in study.rows], study.bands.tolist()
@@ -329,7 +329,7 @@ class CoarseningStudyPanel(QWidget):
         count += ", " + tr("{share:.0%} bootstrap intervals", share=study.confidence)
         if study.box_metric != "exact":
             count += ", " + tr("box of {name}", name=study.box_metric)
-        self.frame.set_remark(count + "; " + tr("computed with other choices") if outdated else count)
+        self.frame.set_hint(count + "; " + tr("computed with other choices") if outdated else count)
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""

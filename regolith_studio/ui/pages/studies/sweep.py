@@ -30,7 +30,7 @@ from regolith_studio.studies.sweeps import GAIN, SWEEPS, descriptor_error, paret
 from regolith_studio.ui.pages.studies.plots import BandPlot, SensitivityTable, Series
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, plain_symbol, remark, rich_symbol
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label, plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.numbers import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -65,9 +65,9 @@ class LossSelector(QWidget):
         self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
         self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
         self.box.setToolTip(tr(BOX_TIP))
-        self.remark = remark()
-        self.remark.setObjectName("study_facets_remark")
-        self.remark.setToolTip(tr(EQUAL_TIP))
+        self.hint_label = hint_label()
+        self.hint_label.setObjectName("study_facets_remark")
+        self.hint_label.setToolTip(tr(EQUAL_TIP))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         for part in (
@@ -75,7 +75,7 @@ class LossSelector(QWidget):
             self.rows,
             heading(tr("Bounding box")),
             self.box,
-            FixedHeightText((self.remark,)),
+            FixedHeightText((self.hint_label,)),
         ):
             column.addWidget(part)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
@@ -98,7 +98,7 @@ class LossSelector(QWidget):
         """Show the number of facets of the studies if polyhedra stop at an error."""
         stops = choices.stop_at == "error"
         words = tr("compared at {count} facets each", count=choices.facet_count)
-        self.remark.setText(words if stops else "")
+        self.hint_label.setText(words if stops else "")
 
     def _menu(self) -> QMenu:
         menu = _StickyMenu(self)
@@ -266,7 +266,7 @@ class SweepPanel(QWidget):
         self.values.setObjectName(f"{key}_values")
         self.values.setAccessibleName(tr(self._variation.asks))
         self.values.setToolTip(tr("Numbers with commas between them; Return starts the study"))
-        self.asked, self.note = QLabel(tr(self._variation.asks)), remark(tr(ON_AND_OFF))
+        self.asked, self.note = QLabel(tr(self._variation.asks)), hint_label(tr(ON_AND_OFF))
         self.part = PARTS[key]()
         self.part.setAccessibleName(tr(self._variation.title))
         self.frame = StudyFrame(key, self.part)
@@ -298,7 +298,7 @@ class SweepPanel(QWidget):
         shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.show_study(study)
         self._show_answer(study)
-        self.frame.set_remark("" if study is None else summary_text(study, outdated))
+        self.frame.set_hint("" if study is None else summary_text(study, outdated))
 
     def _make_answer(self) -> QWidget:
         """The row with the number of facets from which on nothing is gained, and a button that takes it."""

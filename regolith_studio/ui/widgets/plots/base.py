@@ -289,10 +289,10 @@ class Plot(QWidget):
         self.legend = QLabel()
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.legend.setWordWrap(True)
-        self.remark = QLabel()
-        self.remark.setProperty("role", "remark")
+        self.hint_label = QLabel()
+        self.hint_label.setProperty("role", "hint")
         self._placeholder = QLabel(placeholder)
-        self._placeholder.setProperty("role", "remark")
+        self._placeholder.setProperty("role", "hint")
         self._placeholder.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._placeholder.setWordWrap(True)
         self._placeholder.setMargin(12)
@@ -306,7 +306,7 @@ class Plot(QWidget):
         top.setContentsMargins(8, 4, 8, 0)
         top.setSpacing(16)
         top.addWidget(self.legend, 1)
-        top.addWidget(self.remark)
+        top.addWidget(self.hint_label)
         page = QWidget()
         self._page = page
         column = QVBoxLayout(page)
@@ -324,9 +324,9 @@ class Plot(QWidget):
             self._placeholder.setText(placeholder)
         self._stack.setCurrentIndex(0 if empty else 1)
 
-    def set_remark(self, text: str) -> None:
+    def set_hint(self, text: str) -> None:
         """Set the text at the right of the legend, which is hidden where it does not fit."""
-        self.remark.setText(text)
+        self.hint_label.setText(text)
         self._make_room()
 
     def hasHeightForWidth(self) -> bool:
@@ -338,8 +338,8 @@ class Plot(QWidget):
         self._make_room()
 
     def _make_room(self) -> None:
-        needed = self._legend_width() + self.remark.sizeHint().width() + 40
-        self.remark.setVisible(needed <= self.width())
+        needed = self._legend_width() + self.hint_label.sizeHint().width() + 40
+        self.hint_label.setVisible(needed <= self.width())
 
     def _legend_width(self) -> int:
         """Width of the legend on a single line; it wraps between entries."""
@@ -395,7 +395,7 @@ class Plot(QWidget):
             self._set_fonts()
             self.redraw()
 
-    def keep_readable(self) -> None:
+    def fit_to_font(self) -> None:
         """Be at least as high as :data:`READABLE_LINES`, in letters of any size."""
         self._min_lines = READABLE_LINES
         self._set_fonts()

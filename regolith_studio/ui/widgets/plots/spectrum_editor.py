@@ -54,7 +54,7 @@ class SpectrumEditor(Plot):
         self._chosen = min(self._chosen, max(0, len(values) - 1))
         self._timer.stop()
         self._due = False
-        self.set_remark("")
+        self.set_hint("")
         self.canvas.viewport().setCursor(
             Qt.CursorShape.SizeVerCursor if editable else Qt.CursorShape.ArrowCursor
         )
@@ -150,7 +150,7 @@ class SpectrumEditor(Plot):
             super().keyPressEvent(event)
         elif event.key() in steps:
             self._chosen = (self._chosen + steps[Qt.Key(event.key())]) % len(self._values)
-            self.set_remark(self._words())
+            self.set_hint(self._words())
         elif event.key() in factors:
             self._put(float(self._values[self._chosen]) * factors[Qt.Key(event.key())])
             self._finish()
@@ -169,7 +169,7 @@ class SpectrumEditor(Plot):
 
     def _put(self, value: float) -> None:
         self._values[self._chosen] = np.clip(value, 10.0 ** (LOG_MIN - 2), 10.0 ** (LOG_MAX - 2))
-        self.set_remark(self._words())
+        self.set_hint(self._words())
         self._changed()
 
     def _words(self) -> str:

@@ -16,7 +16,7 @@ CLOSE = 1e-3
 
 
 @dataclass(frozen=True)
-class PolyhedronVerdict:
+class PolyhedronAssessment:
     """How well a polyhedron stands for what it imitates.
 
     - ``loss``: eq. 9.
@@ -32,13 +32,13 @@ class PolyhedronVerdict:
     sentence: str
 
 
-def polyhedron_verdict(
+def assess_polyhedron(
     coarsened: CoarseningResult,
     weights: LossWeights,
     against_particle: ParticleComparison | None = None,
     fewer: tuple[int, float] | None = None,
-) -> PolyhedronVerdict:
-    """The verdict on a finished coarsening.
+) -> PolyhedronAssessment:
+    """The assessment on a finished coarsening.
 
     - ``weights``: those of its loss.
     - ``against_particle``: the polyhedron of a fit against the particle itself.
@@ -52,7 +52,7 @@ def polyhedron_verdict(
         parts.append(Message(template, count=fewer[0], loss=Number(fewer[1], "#.4g")))
     if against_particle is not None:
         parts.append(cost_of_imitating_the_fit(against_particle))
-    return PolyhedronVerdict(
+    return PolyhedronAssessment(
         coarsened.loss,
         float(np.sqrt(np.mean(errors**2))) if chosen else float("nan"),
         coarsened.jaccard_distance,

@@ -11,7 +11,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening_jobs import ParticleComparison
-from regolith_studio.session.verdict import polyhedron_verdict
+from regolith_studio.session.assessment import assess_polyhedron
 
 MET = dict.fromkeys(LOSS_KEYS, 1e-7)
 NO_BOUNDS = dict.fromkeys((*LOSS_KEYS, "jaccard_distance"), 0.0)
@@ -29,24 +29,24 @@ def test_that_the_error_is_the_root_mean_square_of_the_weighted_descriptors(
     found = replace(
         coarsened, errors=MET | {"volume": 0.03, "sphericity": 0.04, "aspect_ratio": 0.5}, bounds=NO_BOUNDS
     )
-    verdict = polyhedron_verdict(found, LossWeights.of(volume=1.0, sphericity=2.0, jaccard_distance=1.0))
-    assert verdict.rmsre == pytest.approx(np.sqrt((0.03**2 + 0.04**2) / 2))
-    assert "4 %, of S" in verdict.sentence
-    assert verdict.loss == coarsened.loss
-    assert np.isnan(polyhedron_verdict(found, LossWeights.of(jaccard_distance=1.0)).rmsre)
+    assessment = assess_polyhedron(found, LossWeights.of(volume=1.0, sphericity=2.0, jaccard_distance=1.0))
+    assert assessment.rmsre == pytest.approx(np.sqrt((0.03**2 + 0.04**2) / 2))
+    assert "4 %, of S" in assessment.sentence
+    assert assessment.loss == coarsened.loss
+    assert np.isnan(assess_polyhedron(found, LossWeights.of(jaccard_distance=1.0)).rmsre)
 
 
 def test_that_what_no_convex_polyhedron_can_meet_is_no_fault_of_this_one(coarsened: CoarseningResult) -> None:
     bounds = NO_BOUNDS | {"convex_hull_volume": 0.2}
     found = replace(coarsened, errors=MET | {"convex_hull_volume": 0.2}, bounds=bounds)
-    assert "All weighted descriptors are met but CH" in polyhedron_verdict(found, ALL).sentence
+    assert "All weighted descriptors are met but CH" in assess_polyhedron(found, ALL).sentence
     everything = replace(coarsened, errors=MET, bounds=NO_BOUNDS)
-    assert polyhedron_verdict(everything, ALL).sentence == "All weighted descriptors are met within 0.1 %."
+    assert assess_polyhedron(everything, ALL).sentence == "All weighted descriptors are met within 0.1 %."
 
 
 def test_that_the_particle_itself_and_fewer_facets_are_named(coarsened: CoarseningResult) -> None:
     found = replace(coarsened, errors=MET, bounds=NO_BOUNDS)
     comparison = ParticleComparison(MET | {"max_diameter": 0.17}, 0.21)
-    sentence = polyhedron_verdict(found, ALL, comparison, (12, 0.632)).sentence
+    sentence = assess_polyhedron(found, ALL, comparison, (12, 0.632)).sentence
     assert "Dmax is 17 % off, Jaccard distance 21 %" in sentence
     assert "12 facets had a loss of 0.632" in sentence
