@@ -11,6 +11,8 @@ from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_ex
 from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+from regolith_studio.readers.settings import ReadingSettings
+from regolith_studio.settings import settings_in
 
 if TYPE_CHECKING:
     from regolith_studio.session.choices import Choices
@@ -60,9 +62,8 @@ class BatchOptions:
             convention = table_convention(reading.convention)
         entry = FilesEntry(
             files=[str(path.absolute()) for path in paths],
-            unit=reading.unit,
-            repair=reading.repair,
             convention=convention,
+            **settings_in(ReadingSettings, reading),
         )
         recipe = Recipe.from_choices(choices, [entry], outputs)
         with chosen_executor(self.runner, jobs, self.address, self.tls) as executor:

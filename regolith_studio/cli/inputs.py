@@ -31,8 +31,8 @@ class ReadingOptions(ReadingSettings):
         with usage_errors():
             unit_factor(self.unit)
             tables = TableReading(l_max, table_convention(self.convention))
-        reading = load_particles(tuple(paths), self.unit, self.repair, tables)
-        loaded: LoadedParticles = run_with_progress(reading)
+        steps = load_particles(tuple(paths), ReadingSettings.of(self), tables)
+        loaded: LoadedParticles = run_with_progress(steps)
         print_errors(loaded.left_out)
         print_errors(problem.with_path for problem in loaded.problems)
         return loaded

@@ -14,6 +14,7 @@ from regolith_studio.jobs.events import Failed, Job, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, MeshFile, find_files, read_file
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.shape_tables import SUFFIXES, read_shape_table
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.studies.matching import SHAPES, SIZES, ComparedMaterial, match
@@ -127,7 +128,7 @@ def _chosen(files: Sequence[MeshFile], request: MatchRequest) -> list[MeshFile]:
 
 def _measure_file(file: MeshFile, unit: str, keys: tuple[str, ...]) -> Steps:
     yield Started(N_("Measuring"))
-    measured: Descriptors = describe(read_file(file, unit), keys)
+    measured: Descriptors = describe(read_file(file, ReadingSettings(unit)), keys)
     return measured
 
 

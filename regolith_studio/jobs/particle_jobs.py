@@ -34,6 +34,7 @@ from regolith_studio.readers.particles import (
     read_each,
     sample_particles,
 )
+from regolith_studio.readers.settings import AS_USUAL, ReadingSettings
 
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
 
@@ -44,8 +45,7 @@ LARGE = 200_000
 
 def load_particles(
     paths: Sequence[Path],
-    unit: str = "um",
-    repair: bool = True,
+    reading: ReadingSettings = AS_USUAL,
     tables: TableReading = DEFAULT_TABLE_READING,
 ) -> Steps:
     """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
@@ -57,7 +57,7 @@ def load_particles(
     files = find_files(paths, problems, tables)
     yield from compile_first("read")
     yield Started(N_("Reading particles"), len(files))
-    for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):
+    for done, (file, result) in enumerate(read_each(files, reading), start=1):
         results.append(result)
         yield Progress(done, len(files), file.path.name)
     return replace(collect_particles(results, problems), left_out=tuple(left_out(paths)))
@@ -71,7 +71,7 @@ def measure_first(paths: Sequence[Path], convention: TableConvention = "auto") -
     yield Started(N_("Reading particles"))
     problems: list[FileProblem] = []
     files = find_files(paths, problems, TableReading(None, convention))
-    for file, result in read_each(files[:1], "um", False):
+    for file, result in read_each(files[:1], ReadingSettings(repair=False)):
         if not isinstance(result, FileProblem):
             return file.path.stem, float(np.ptp(result.mesh.bounds, axis=0).max())
         problems.append(result)

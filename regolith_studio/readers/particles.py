@@ -38,6 +38,7 @@ from regolith_studio.readers.error_messages import (
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
+from regolith_studio.readers.settings import AS_USUAL, ReadingSettings
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.readers.zip_members import SUFFIX
 from regolith_studio.resources import resource
@@ -136,7 +137,7 @@ def read_mesh(
     file = MeshFile(Path(path), tables=TableReading(l_max, convention))
     if archive_of(file.path) is not None:
         file = mesh_files([path])[0]
-    return read_file(file, unit, repair, sandbox)
+    return read_file(file, ReadingSettings(unit, repair), sandbox)
 
 
 def read_particles(
@@ -166,7 +167,7 @@ def read_particles(
     """
     problems: list[FileProblem] = []
     files = find_files(paths, problems, TableReading(l_max, convention))
-    results = [result for _, result in read_each(files, unit, repair)]
+    results = [result for _, result in read_each(files, ReadingSettings(unit, repair))]
     loaded = collect_particles(results, problems)
     for problem in loaded.problems:
         (on_problem or _log_problem)(Path(problem.path), problem.sentence)
@@ -174,12 +175,12 @@ def read_particles(
 
 
 def read_each(
-    files: Sequence[MeshFile], unit: str = "um", repair: bool = True
+    files: Sequence[MeshFile], reading: ReadingSettings = AS_USUAL
 ) -> Iterator[tuple[MeshFile, "Particle | FileProblem"]]:
     """Read one file after the other; a file that cannot be read gives a `FileProblem`."""
     for file in files:
         try:
-            yield file, read_file(file, unit, repair)
+            yield file, read_file(file, reading)
         except (FileError, GeometryError) as error:
             yield file, FileProblem(str(file.path), str(error))
 
@@ -213,22 +214,22 @@ def unique_names(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tu
 
 
 def read_file(
-    file: MeshFile, unit: str = "um", repair: bool = True, sandbox: Sandbox | None = None
+    file: MeshFile, reading: ReadingSettings = AS_USUAL, sandbox: Sandbox | None = None
 ) -> Particle:
     """As `read_mesh`, for one of `mesh_files`: the particle gets its group and its weight."""
-    particle = _read_file(file, unit, repair, sandbox)
+    particle = _read_file(file, reading, sandbox)
     if particle.source is not None:
         check_listed(file.path.name, particle.source.sha256, file.listed)
     return particle
 
 
-def _read_file(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
+def _read_file(file: MeshFile, reading: ReadingSettings, sandbox: Sandbox | None) -> Particle:
     suffix = file.path.suffix.lower()
     if suffix in TABLE_SUFFIXES:
-        return _read_table(file, unit, sandbox)
+        return _read_table(file, reading.unit, sandbox)
     if suffix in TEXT_SUFFIXES:
-        return _mesh_or_table(file, unit, repair, sandbox)
-    return _read_mesh(file, unit, repair, sandbox)
+        return _mesh_or_table(file, reading, sandbox)
+    return _read_mesh(file, reading, sandbox)
 
 
 def _read_table(file: MeshFile, unit: str, sandbox: Sandbox | None) -> Particle:
@@ -236,22 +237,22 @@ def _read_table(file: MeshFile, unit: str, sandbox: Sandbox | None) -> Particle:
     return replace(particle, weight=file.weight)
 
 
-def _mesh_or_table(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
+def _mesh_or_table(file: MeshFile, reading: ReadingSettings, sandbox: Sandbox | None) -> Particle:
     """The particle in a text file whose content decides between table and mesh."""
     try:
-        return _read_table(file, unit, sandbox)
+        return _read_table(file, reading.unit, sandbox)
     except FileError as no_table:
         try:
-            return _read_mesh(file, unit, repair, sandbox)
+            return _read_mesh(file, reading, sandbox)
         except FileError:
             reason = str(no_table).removeprefix(f"{display_name(file.path)} ")
             sentence = f"is not a mesh, and as a table of coefficients it {reason}"
             raise FileError(message_about(file.path, sentence)) from None
 
 
-def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
+def _read_mesh(file: MeshFile, reading: ReadingSettings, sandbox: Sandbox | None) -> Particle:
+    unit, path = reading.unit, file.path
     factor = unit_factor(unit)
-    path = file.path
     sandbox = sandbox or shared_sandbox()
     answer = sandbox.request("mesh", path) if file.member is None else file.member.request(sandbox)
     own_unit: str | None = answer.header["unit"]
@@ -267,7 +268,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
         notes += (f"Its numbers were multiplied by {factor:g} µm instead, as was asked.",)
     repaired = None
     try:
-        if repair:
+        if reading.repair:
             repaired = mesh_repair.repair(mesh)
             mesh, notes = repaired.mesh, notes + repaired.health_before.problems + repaired.actions
         else:
@@ -276,7 +277,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
         left_out = "".join(f" {note}" for note in answer.header["notes"] if note.startswith("Left out"))
         reason = f"holds no particle: {lower_first(str(error))}{left_out}"
         raise GeometryError(message_about(path, reason)) from None
-    source = Source(str(path), answer.header["sha256"], unit, repair)
+    source = Source(str(path), answer.header["sha256"], unit, reading.repair)
     return Particle(path.stem, mesh, file.group, source, notes, file.weight, repaired)
 
 

@@ -3,7 +3,7 @@
 import dataclasses
 import hashlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -14,6 +14,7 @@ from regolith_studio.io.atomic import write_files
 from regolith_studio.io.file_names import unique_name
 from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.provenance import (
@@ -75,8 +76,7 @@ class SessionRecipe:
             choices,
             _inputs(origins),
             outputs,
-            unit=first.unit if first else choices.unit,
-            repair=first.repair if first else choices.repair,
+            **asdict(first.reading if first else ReadingSettings.of(choices)),
             volumes=[each.volume for each in origins if isinstance(each, VolumeSource)],
             population=virtual.population if virtual else None,
             particles=_selection(pairs, list(named.values())),
@@ -116,8 +116,7 @@ def _inputs(origins: Sequence[ParticleSource]) -> list[str | FilesEntry]:
     for number, each in enumerate(files):
         entry = FilesEntry(
             files=list(each.paths),
-            unit=each.unit,
-            repair=each.repair,
+            **asdict(each.reading),
             l_max=each.l_max,
             convention=each.convention,
         )

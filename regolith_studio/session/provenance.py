@@ -13,6 +13,7 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, TableConvention
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, find_files, sample_particles
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.session.recipe import Population, Recipe, VolumeEntry
 
 if TYPE_CHECKING:
@@ -40,15 +41,13 @@ class FileSource:
     """Files and folders that were read together.
 
     - ``paths``: as they were named, absolute.
-    - ``unit``: of those without one.
-    - ``repair``: whether meshes were repaired.
+    - ``reading``: how meshes were read.
     - ``l_max``: degree above which coefficients of tables were left out.
     - ``convention``: of tables of coefficients: normalisation and phase.
     """
 
     paths: tuple[str, ...]
-    unit: str
-    repair: bool = True
+    reading: ReadingSettings
     l_max: int | None = None
     convention: TableConvention = "auto"
 
@@ -149,7 +148,7 @@ def ref_by_source(particle: Particle) -> ParticleRef | None:
         return ParticleRef(SampleSource(), name)
     if Path(source.path).suffix.lower() not in {*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES}:
         return None
-    return ParticleRef(FileSource((source.path,), source.unit, source.repaired), source.path)
+    return ParticleRef(FileSource((source.path,), ReadingSettings(source.unit, source.repaired)), source.path)
 
 
 MAX_RESTORED = 2000
@@ -213,8 +212,7 @@ class _References:
         named = (
             FileSource(
                 tuple(str(base / file) for file in each.files),
-                each.unit,
-                each.repair,
+                ReadingSettings.of(each),
                 each.l_max,
                 each.convention,
             )

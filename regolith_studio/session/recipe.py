@@ -16,9 +16,10 @@ from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_
 from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices, Scalar
-from regolith_studio.settings import settings_of_kind
+from regolith_studio.settings import settings_in, settings_of_kind
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[2] = 2
@@ -36,6 +37,34 @@ class Strict(BaseModel):
     """Refuses what it does not know, and values of another type."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def _entry(each: DataclassField[Any]) -> tuple[Any, Any]:
+    """Type and description of the entry that holds a setting."""
+    known = each.metadata
+    kind = Literal[tuple(known["choices"])] if "choices" in known else type(each.default)
+    limits = {"ge": known.get("minimum"), "le": known.get("maximum")}
+    given = {name: value for name, value in limits.items() if value is not None}
+    return kind, Field(default=each.default, title=known["label"], description=known["tip"], **given)
+
+
+def _entries(kind: Any) -> dict[str, tuple[Any, Any]]:
+    """An entry for each setting of a dataclass."""
+    return {each.name: _entry(each) for each in settings_of_kind(kind)}
+
+
+if TYPE_CHECKING:
+
+    class _SettingsEntries(Strict):
+        def __getattr__(self, name: str) -> Any: ...
+
+    _ReadingEntries = _SettingsEntries
+    _DatasetEntries = _SettingsEntries
+    _ExportEntries = _SettingsEntries
+else:
+    _ReadingEntries = create_model("_ReadingEntries", __base__=Strict, **_entries(ReadingSettings))
+    _DatasetEntries = create_model("_DatasetEntries", __base__=Strict, **_entries(DatasetSettings))
+    _ExportEntries = create_model("_ExportEntries", __base__=Strict, **_entries(ExportSettings))
 
 
 class Population(Strict):
@@ -72,7 +101,7 @@ class Population(Strict):
         return None if self.size_range is None else (self.size_range[0], self.size_range[1])
 
 
-class FilesEntry(Strict):
+class FilesEntry(_ReadingEntries):
     """Files and folders that are read together, in a unit of their own; relative to the recipe.
 
     ``l_max``: degree above which coefficients of tables are left out; by default none are. ``convention``:
@@ -80,8 +109,6 @@ class FilesEntry(Strict):
     """
 
     files: list[str] = Field(min_length=1, max_length=MAX_ENTRIES)
-    unit: str
-    repair: bool = True
     l_max: int | None = Field(default=None, ge=1, le=MAX_TABLE_DEGREE)
     convention: TableConvention = "auto"
 
@@ -137,31 +164,7 @@ class VolumeEntry(Strict):
         return self
 
 
-def _entry(each: DataclassField[Any]) -> tuple[Any, Any]:
-    """Type and description of the entry that holds a setting."""
-    known = each.metadata
-    kind = Literal[tuple(known["choices"])] if "choices" in known else type(each.default)
-    limits = {"ge": known.get("minimum"), "le": known.get("maximum")}
-    given = {name: value for name, value in limits.items() if value is not None}
-    return kind, Field(default=each.default, title=known["label"], description=known["tip"], **given)
-
-
-def _entries(kind: Any) -> dict[str, tuple[Any, Any]]:
-    """An entry for each setting of a dataclass."""
-    return {each.name: _entry(each) for each in settings_of_kind(kind)}
-
-
 _ENTRIES = _entries(Choices)
-
-if TYPE_CHECKING:
-
-    class _DatasetEntries(Strict):
-        def __getattr__(self, name: str) -> Any: ...
-
-    _ExportEntries = _DatasetEntries
-else:
-    _DatasetEntries = create_model("_DatasetEntries", __base__=Strict, **_entries(DatasetSettings))
-    _ExportEntries = create_model("_ExportEntries", __base__=Strict, **_entries(ExportSettings))
 
 
 class Representatives(_DatasetEntries):
@@ -295,7 +298,7 @@ class Recipe(_ChoiceEntries):
     def openings(self) -> tuple[FilesEntry, ...]:
         """Files and folders that are read together, those named alone first; without the sample."""
         plain = [entry for entry in self.inputs if isinstance(entry, str) and entry != SAMPLE]
-        first = (FilesEntry(files=plain, unit=self.unit, repair=self.repair),) if plain else ()
+        first = (FilesEntry(files=plain, **settings_in(ReadingSettings, self)),) if plain else ()
         return first + tuple(entry for entry in self.inputs if isinstance(entry, FilesEntry))
 
     @property

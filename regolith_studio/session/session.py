@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from regolith_studio.jobs.runners import Runner
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableConvention, TableReading
 from regolith_studio.readers.particles import LoadedParticles, unique_names
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import STUDIES, Choices, Kind, depends
 from regolith_studio.session.history import History
@@ -125,21 +127,21 @@ class Session:
         paths: Sequence[Path | str],
         unit: str | None = None,
         add: bool = False,
-        repair: bool | None = None,
+        reading: ReadingSettings | None = None,
         convention: TableConvention = "auto",
     ) -> int:
         """Read files and folders of meshes in the background; returns the task's id.
 
         - ``unit``: length unit of files that have none; the chosen one if left out.
         - ``add``: keep the particles that are open already.
-        - ``repair``: whether meshes are repaired; as chosen if left out.
+        - ``reading``: how meshes are read; as chosen if left out.
         - ``convention``: of tables of coefficients: normalisation and phase.
         """
-        unit = unit or self.choices.unit
-        repair = self.choices.repair if repair is None else repair
+        reading = reading or ReadingSettings.of(self.choices)
+        reading = replace(reading, unit=unit or reading.unit)
         named = tuple(Path(path).absolute() for path in paths)
-        origin = FileSource(tuple(map(str, named)), unit, repair, convention=convention)
-        job = Job(load_particles, (named, unit, repair, TableReading(None, convention)))
+        origin = FileSource(tuple(map(str, named)), reading, convention=convention)
+        job = Job(load_particles, (named, reading, TableReading(None, convention)))
         return self._load(N_("Reading particles"), job, origin, add)
 
     def open_sample(self, add: bool = False) -> int:
@@ -160,8 +162,8 @@ class Session:
             (entry,) = recipe.openings
             if entry.l_max is None:
                 files = [base / file for file in entry.files]
-                return self.open(files, entry.unit, repair=entry.repair, convention=entry.convention)
-
+                reading = ReadingSettings.of(entry)
+                return self.open(files, reading=reading, convention=entry.convention)
         return self._restore(recipe, base)
 
     def _restore(self, recipe: Recipe, base: Path, selected: str = "") -> int:

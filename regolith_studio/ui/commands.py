@@ -158,11 +158,12 @@ class Commands(QObject):
             self._toast.problem(tr("{name} was not read from a file whose unit could be changed.", name=id))
             return
         paths = [Path(path) for path in origin.paths]
-        reading = self._reading_of_user(paths, origin.unit, origin.convention)
-        if reading is None or reading == (origin.unit, origin.convention):
+        reading = self._reading_of_user(paths, origin.reading.unit, origin.convention)
+        if reading is None or reading == (origin.reading.unit, origin.convention):
             return
         unit, convention = reading
-        changed = dataclasses.replace(origin, unit=unit, convention=convention)
+        read = dataclasses.replace(origin.reading, unit=unit)
+        changed = dataclasses.replace(origin, reading=read, convention=convention)
         refs = [
             ParticleRef(changed, each.ref.key) if each.ref and each.ref.origin == origin else each.ref
             for each in entries

@@ -26,6 +26,7 @@ from regolith_studio.readers.particles import (
     read_file,
     sample_particles,
 )
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.batch.preprocessing import (
@@ -80,8 +81,7 @@ class FileInput(_NamedInput):
     """A mesh file."""
 
     file: MeshFile
-    unit: str
-    repair: bool = True
+    reading: ReadingSettings
 
     @property
     def fingerprint(self) -> str:
@@ -97,7 +97,7 @@ class FileInput(_NamedInput):
 
     def particle(self) -> Particle:
         """The particle in the file."""
-        return replace(read_file(self.file, self.unit, self.repair), name=self.name)
+        return replace(read_file(self.file, self.reading), name=self.name)
 
 
 @dataclass(frozen=True)
@@ -180,10 +180,10 @@ class BatchInputs:
             for particle in sample_particles():
                 members.append(SampleInput(unique_name(particle.name, particle.group, taken), particle.name))
         for each in recipe.openings:
-            reading = TableReading(each.l_max, each.convention)
-            for file in find_files([base / name for name in each.files], problems, reading):
+            tables, reading = TableReading(each.l_max, each.convention), ReadingSettings.of(each)
+            for file in find_files([base / name for name in each.files], problems, tables):
                 name = unique_name(file.path.stem, file.group, taken)
-                members.append(FileInput(name, file, each.unit, each.repair))
+                members.append(FileInput(name, file, reading))
         for folder in prepared.volumes:
             for entry in read_index(folder):
                 members.append(GrainInput(unique_name(entry["name"], entry["group"], taken), folder, entry))

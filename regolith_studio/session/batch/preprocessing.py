@@ -39,6 +39,7 @@ from regolith_studio.jobs.model_jobs import GenerationRequest, fit_model, fit_re
 from regolith_studio.jobs.particle_jobs import load_particles
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.particles import FileProblem, find_files
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.outputs.particles import RECIPE, recipe_document
@@ -210,10 +211,11 @@ def _fit_population_model(
             for file in find_files(paths, problems)
         ]
     document = population.model_dump(mode="json", exclude={"n", "size_range"})
-    folder = root / f"model-{_digest(document, recipe.seed, recipe.unit, recipe.repair, marks)}"
+    reading = ReadingSettings.of(recipe)
+    folder = root / f"model-{_digest(document, recipe.seed, asdict(reading), marks)}"
     if not (folder / MODEL).is_file():
         if not named:
-            loaded = yield from load_particles(paths, recipe.unit, recipe.repair)
+            loaded = yield from load_particles(paths, reading)
             source = yield from sample_of_meshes(loaded.particles, fit_request_for(request), executor)
         fitted = yield from fit_model(source, request)
         with _removing_empty_folder(root), staged_folder(folder, "prepared") as stage:
