@@ -21,9 +21,8 @@ from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engines.mujoco import simulation
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.verification.bodies import cuboid
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.half_spaces import HalfSpaces
 
 FRICTION, DURATION, N_BOXES, SEEDS = 0.8, 12.0, 40, (2, 3, 4)
 TUMBLED = 20.0
@@ -56,15 +55,8 @@ def box_dataset() -> Dataset:
     """Cubes and bricks with two sizes."""
     sizes = DiscreteSizeDistribution.of((80.0, 100.0), (1.0, 1.0))
     frame = Frame(np.eye(3), np.zeros(3), 100.0)
-    shapes = {"cube": box(1, 1, 1), "brick": box(3, 2, 1.5)}
+    shapes = {"cube": cuboid(1, 1, 1), "brick": cuboid(3, 2, 1.5)}
     return Dataset("boxes", tuple(Representative(k, v, 0.5, sizes, frame) for k, v in shapes.items()))
-
-
-def box(a: float, b: float, c: float) -> ConvexPolyhedron:
-    """A cuboid of unit volume with these proportions."""
-    half = np.array([a, b, c]) / (a * b * c) ** (1 / 3) / 2
-    normals = np.concatenate([np.eye(3), -np.eye(3)])
-    return ConvexPolyhedron.from_half_spaces(HalfSpaces(normals, np.concatenate([half, half])))
 
 
 def slide(

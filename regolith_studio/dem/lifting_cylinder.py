@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
+from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import (
     MASS,
@@ -80,6 +81,32 @@ class LiftingSettings:
         default=60.0, metadata={"label": N_("Maximum duration"), "minimum": 1.0, "maximum": 1e5}
     )
     snapshots: int = field(default=120, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
+
+
+@dataclass(frozen=True)
+class SubstepSettings(LiftingSettings):
+    """Numerics of a solver that takes small steps between two searches for contacts; times in sqrt(d/g).
+
+    Parameters
+    ----------
+    time_step
+        Between two searches for contacts; halved once or twice while particles move fast.
+    substeps
+        Small steps of the solver in a time step.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    time_step: float = field(
+        default=0.05, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
+    )
+    substeps: int = field(default=8, metadata={"label": N_("Substeps"), "minimum": 1, "maximum": 100})
+
+    def __post_init__(self) -> None:
+        check_limits(self, "setting of the solver")
 
 
 class Solver(Protocol):

@@ -12,7 +12,7 @@ def verify_engine(key: str, quick: bool = False) -> Steps:
     ``key``: of the engine. ``quick``: leave out what takes more than minutes: gravity and dice.
     """
     engine = verifiable_engine(key)
-    keys = tuple(QUICK if quick else MEASUREMENTS)
+    keys = QUICK if quick else MEASUREMENTS
     yield Started(N_("Verifying the engine"), len(keys))
     steps, done = measure_lines(engine, keys), 0
     while True:

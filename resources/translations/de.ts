@@ -780,10 +780,6 @@
         <translation>Klassenbreite, in mittleren d</translation>
     </message>
     <message>
-        <source>Blocks of the cylinder</source>
-        <translation>Blöcke des Zylinders</translation>
-    </message>
-    <message>
         <source>Bottom (from -z)</source>
         <translation>Unten (von -z)</translation>
     </message>
@@ -1192,6 +1188,10 @@
         <translation>Das Polyeder vergleichen mit</translation>
     </message>
     <message>
+        <source>Comparing</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Comparing distributions</source>
         <translation>Verteilungen werden verglichen</translation>
     </message>
@@ -1380,10 +1380,6 @@
         <translation>Coulomb-Reibung jeder Berührfläche, ein Beiwert (der der Haftreibung)</translation>
     </message>
     <message>
-        <source>Coulomb friction while sliding, one coefficient (the static one), without contact history</source>
-        <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), ohne Kontaktgeschichte</translation>
-    </message>
-    <message>
         <source>Counting grey values</source>
         <translation>Grauwerte werden gezählt</translation>
     </message>
@@ -1434,10 +1430,6 @@
     <message>
         <source>D_min / √(D_max D_int) (Corey)</source>
         <translation>D_min / √(D_max D_int) (Corey)</translation>
-    </message>
-    <message>
-        <source>Damping</source>
-        <translation>Dämpfung</translation>
     </message>
     <message>
         <source>Dark</source>
@@ -2521,7 +2513,7 @@
     </message>
     <message>
         <source>Hertz and Mindlin stiffness, cohesion; single precision</source>
-        <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion; einfache Genauigkeit</translation>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Hertz and Mindlin stiffness, restitution, different static and dynamic friction</source>
@@ -2530,10 +2522,6 @@
     <message>
         <source>Hertz with a reduced Young&apos;s modulus (recorded) and restitution; approximate with cohesion</source>
         <translation>Hertz mit verringertem Elastizitätsmodul (wird vermerkt) und Stoßzahl; mit Kohäsion genähert</translation>
-    </message>
-    <message>
-        <source>Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles</source>
-        <translation>Hertz, Mindlin, Stoßzahl, Kohäsion, Rollwiderstand: qualitativ; etwa 200 Partikel</translation>
     </message>
     <message>
         <source>Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric</source>
@@ -3390,6 +3378,10 @@
     <message>
         <source>Nearest particles whose ellipsoid may be used.</source>
         <translation>Nächste Partikel, deren Ellipsoid verwendet werden kann.</translation>
+    </message>
+    <message>
+        <source>Nearness of each material, and of the best mixture, to the target</source>
+        <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Negative where the mesh is inside out</source>
@@ -5504,20 +5496,12 @@
         <translation>Schrittweite in mittleren |p|</translation>
     </message>
     <message>
-        <source>Step, share of an oscillation</source>
-        <translation>Schritt, Anteil einer Schwingung</translation>
-    </message>
-    <message>
         <source>Steps per second</source>
         <translation>Schritte je Sekunde</translation>
     </message>
     <message>
         <source>Steps per second during playback.</source>
         <translation>Schritte je Sekunde beim Abspielen.</translation>
-    </message>
-    <message>
-        <source>Stiffness, in m g / d³</source>
-        <translation>Steifigkeit, in m g / d³</translation>
     </message>
     <message>
         <source>Stop</source>
@@ -6788,10 +6772,6 @@
         <translation>YADE (Skript)</translation>
     </message>
     <message>
-        <source>YADE is not installed; install the package yade of your Linux distribution.</source>
-        <translation>YADE ist nicht installiert; installieren Sie das Paket yade Ihrer Linux-Distribution.</translation>
-    </message>
-    <message>
         <source>Young&apos;s modulus</source>
         <translation>Elastizitätsmodul</translation>
     </message>
@@ -7310,10 +7290,6 @@
     <message>
         <source>for the particle on screen and those after it, one row per loss function</source>
         <translation>für das gezeigte Partikel und die danach, eine Zeile je Verlustfunktion</translation>
-    </message>
-    <message>
-        <source>force in proportion to the overlapping volume: neither Hertz nor restitution</source>
-        <translation>Kraft im Verhältnis zum Überlappungsvolumen: weder Hertz noch Stoßzahl</translation>
     </message>
     <message>
         <source>friction</source>

@@ -12,8 +12,8 @@ from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
-from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.engines.rapier.simulation import RapierSolver, inner_parallel_body
+from regolith_studio.dem.lifting_cylinder import SubstepSettings
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments
@@ -29,7 +29,7 @@ def prepared(elbows: Dataset) -> PreparedCase:
 
 
 def test_that_rapier_gives_a_body_mass_and_inertia_of_the_union(prepared: PreparedCase) -> None:
-    bodies = RapierSolver(prepared, RapierSettings()).particles
+    bodies = RapierSolver(prepared, SubstepSettings()).particles
     volumes = np.pi / 6 * (prepared.diameters / prepared.mean_diameter) ** 3
     assert [body.mass for body in bodies] == pytest.approx(volumes.tolist(), rel=1e-5)
     for k in np.flatnonzero(prepared.class_index == 0).tolist():
@@ -41,7 +41,7 @@ def test_that_rapier_gives_a_body_mass_and_inertia_of_the_union(prepared: Prepar
 def test_that_rapier_turns_an_elbow_about_the_axes_of_its_union(prepared: PreparedCase) -> None:
     """The angular velocity after a torque impulse is that of the tensor of inertia."""
     k = int(np.flatnonzero(prepared.class_index == 0)[0])
-    body = RapierSolver(prepared, RapierSettings()).particles[k]
+    body = RapierSolver(prepared, SubstepSettings()).particles[k]
     turn = Rotation.from_quat(body.rotation.quaternion).as_matrix()
     size = prepared.scales[k] / prepared.mean_diameter
     inertia = turn @ (prepared.inertias[0] * size**5) @ turn.T
@@ -52,7 +52,7 @@ def test_that_rapier_turns_an_elbow_about_the_axes_of_its_union(prepared: Prepar
 
 def test_that_parts_of_one_body_do_not_touch_each_other_on_rapier(elbows: Dataset) -> None:
     """The parts of an elbow share a corner; far from others it falls freely and does not turn."""
-    solver = RapierSolver(prepare(elbows, CASE), RapierSettings())
+    solver = RapierSolver(prepare(elbows, CASE), SubstepSettings())
     for k, body in enumerate(solver.particles):
         body.translation = Vec3(20.0 * k, 0.0, 500.0)
     solver.begin("settle")
@@ -68,7 +68,7 @@ def test_that_rapier_lets_a_cube_between_the_bars_of_an_elbow() -> None:
     cube = cuboid(0.5, 0.5, 0.5)
     pair = [elbow_entry(), (Particle("cube", cube.mesh), Coarse(cube, np.zeros(3)))]
     dataset = build_dataset(pair, name="pair")
-    solver = RapierSolver(prepare(dataset, CASE), RapierSettings())
+    solver = RapierSolver(prepare(dataset, CASE), SubstepSettings())
     kinds, frame = solver.prepared.class_index, dataset.representatives[0].frame
     outer, inner = int(np.flatnonzero(kinds == 0)[0]), int(np.flatnonzero(kinds == 1)[0])
     for k, body in enumerate(solver.particles):

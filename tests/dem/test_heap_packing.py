@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from benchmarks.sliding_friction import box
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import measure_repose
@@ -12,9 +11,10 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, ShapeKind, prepar
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing, within_particles
 from regolith_studio.dem.separation import separations
 from regolith_studio.dem.snapshot import ParticleState
+from regolith_studio.dem.verification.bodies import cuboid
 from tests.dem.packings import cone
 
-CUBE = box(1, 1, 1).vertices
+CUBE = cuboid(1, 1, 1).vertices
 FACE_CENTRED = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]]) * np.sqrt(2)
 """Centres of touching balls of diameter 1 in a cell of edge sqrt(2)."""
 

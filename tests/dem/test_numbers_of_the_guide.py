@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from benchmarks.repose_intervals import ANGLES, line, measured
-from benchmarks.sliding_friction import box
 from regolith_studio.dataset.dataset import Dataset, Frame, Representative
 from regolith_studio.dataset.export import ExportOptions
 from regolith_studio.dataset.multisphere import COUNTS
@@ -20,8 +19,8 @@ from regolith_studio.dem.case import ReposeCase, prepare, rayleigh_time, scaling
 from regolith_studio.dem.engine import DEEP_OVERLAP, MAX_DEEP_CONTACTS, MAX_OVERLAP
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.mujoco.simulation import MAX_MOVE, SMALLEST_SHARE
-from regolith_studio.dem.engines.yade.program import YadeSettings
 from regolith_studio.dem.evaluation.settings import MAX_CURVATURE, EvaluationSettings
+from regolith_studio.dem.verification.bodies import cuboid
 
 ROOT = Path(__file__).parents[2]
 REPOSE = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "docs").glob("repose*.md")))
@@ -67,7 +66,7 @@ def test_that_the_plan_for_the_paper_s_particles_has_the_numbers_of_the_code() -
     volume = np.pi / 6 * (share @ (10e-6 * diameter) ** 3)
     count = round(LiftingCylinderTest().mass / ContactParameters().density / volume)
     frame = Frame(np.eye(3), np.zeros(3), 100.0)
-    paper = Dataset("paper", (Representative("cube", box(1, 1, 1), 1.0, sizes, frame),))
+    paper = Dataset("paper", (Representative("cube", cuboid(1, 1, 1), 1.0, sizes, frame),))
     prepared = prepare(paper, ReposeCase(n_particles=count, cohesion="given"))
     found, contact = scaling_report(prepared), prepared.case.contact
     smallest = float(prepared.diameters.min())
@@ -96,7 +95,6 @@ def test_that_sentences_have_the_limits_of_the_code() -> None:
         f"--particles {ReposeCase().n_particles}",
         f"rigid clumps of {lammps.spheres} overlapping spheres",
         f"(`restarts`, {lammps.restarts} times at most)",
-        f"(`restarts`, {YadeSettings().restarts} times at most)",
         f"at most {100 * MAX_DEEP_CONTACTS:g} % of the contacts of the heap at rest are deeper than "
         f"{100 * DEEP_OVERLAP:g} % of the mean diameter, and none is deeper than {100 * MAX_OVERLAP:g} %",
         f"flanks within {NEIGHBOURHOOD:g} degrees counted as one",

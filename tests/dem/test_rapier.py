@@ -18,11 +18,10 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engine_process import run_task
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.engines.rapier.simulation import RapierSolver, inner_parallel_body
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.initial_packing import enclosing_radii
-from regolith_studio.dem.lifting_cylinder import N_WALLS, LiftingSettings
+from regolith_studio.dem.lifting_cylinder import N_WALLS, LiftingSettings, SubstepSettings
 from regolith_studio.dem.run_io import read_run, snapshot_files
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import EngineState, Snapshot, read_particle_state
@@ -47,7 +46,7 @@ def solver_of(boxes: Dataset, n: int = 10, **values: Any) -> RapierSolver:
     contact = replace(
         ContactParameters(), **{key: value for key, value in values.items() if key not in known}
     )
-    return RapierSolver(prepare(boxes, ReposeCase(test, contact, n_particles=n, seed=2)), RapierSettings())
+    return RapierSolver(prepare(boxes, ReposeCase(test, contact, n_particles=n, seed=2)), SubstepSettings())
 
 
 def place(solver: RapierSolver, points: FloatArray) -> None:
@@ -133,7 +132,7 @@ def test_that_a_column_of_boxes_stands(boxes: Dataset) -> None:
 def test_that_a_ball_rebounds_with_the_restitution_that_is_set(boxes: Dataset, restitution: float) -> None:
     contact = ContactParameters(restitution=restitution)
     case = ReposeCase(TEST, contact, n_particles=10, shapes="spheres")
-    solver = RapierSolver(prepare(boxes, case), RapierSettings())
+    solver = RapierSolver(prepare(boxes, case), SubstepSettings())
     place(solver, np.column_stack([1.5 * np.arange(10) - 7.0, np.zeros(10), np.full(10, 5.5)]))
     solver.begin("rest")
     before = 0.0
@@ -150,7 +149,7 @@ def test_that_a_ball_rebounds_with_the_restitution_that_is_set(boxes: Dataset, r
 def test_that_no_particle_gets_between_the_boxes_of_the_wall(boxes: Dataset) -> None:
     """Balls thrown at the corners of the ring."""
     case = ReposeCase(TEST, n_particles=N_WALLS, shapes="spheres")
-    solver = RapierSolver(prepare(boxes, case), RapierSettings())
+    solver = RapierSolver(prepare(boxes, case), SubstepSettings())
     radius = 0.01 / solver.prepared.mean_diameter
     angle = 2 * np.pi * (np.arange(N_WALLS) + 0.5) / N_WALLS
     out = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -332,6 +331,6 @@ def test_that_what_rapier_lacks_is_refused(boxes: Dataset) -> None:
     sticky = ReposeCase(TEST, n_particles=40, cohesion="given")
     for case, sentence in ((rough, "no rolling resistance"), (sticky, "no cohesion")):
         with pytest.raises(InputError, match=sentence):
-            engine_named("rapier").simulate(prepare(boxes, case), RapierSettings())
+            engine_named("rapier").simulate(prepare(boxes, case), SubstepSettings())
     with pytest.raises(InputError, match="time_step"):
-        RapierSettings(time_step=1.0)
+        SubstepSettings(time_step=1.0)

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.sliding_friction import box
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
@@ -23,6 +22,7 @@ from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import find_runs, save_snapshot
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.verification.bodies import cuboid
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.repose_jobs import ReposeRequest
@@ -176,7 +176,7 @@ def heap_by_aspect_ratio(
 
 
 def dataset_of_cuboids(folder: Path, aspect_ratio: float, boxes: Dataset) -> str:
-    shape = box(aspect_ratio, 1.0, 1.0)
+    shape = cuboid(aspect_ratio, 1.0, 1.0)
     only = replace(boxes.representatives[0], weight=1.0, shape=shape)
     return str(write_dataset(folder / f"box{aspect_ratio}", replace(boxes, representatives=(only,))))
 

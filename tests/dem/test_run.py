@@ -290,7 +290,7 @@ def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, t
     (stage,) = tmp_path.glob(".run.*.regolith-new")
     scratch = Path(child.environ()["TMPDIR"])
     assert scratch.parent == stage
-    (scratch / "states").mkdir()  # as LAMMPS and YADE write theirs, and cannot remove when they are killed
+    (scratch / "states").mkdir()  # as LAMMPS writes its own, and cannot remove when they are killed
     steps.close()
     assert not _workers()
     assert read_run(tmp_path / "run").document["state"] == "stopped"

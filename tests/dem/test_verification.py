@@ -13,7 +13,7 @@ from regolith_studio.cli.terminal import print_json
 from regolith_studio.dem import shipped_certificates
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import ENGINES
-from regolith_studio.dem.engines.rapier.settings import RapierSettings
+from regolith_studio.dem.lifting_cylinder import SubstepSettings
 from regolith_studio.dem.verification import scenes
 from regolith_studio.dem.verification.bodies import N_FACETS, polyhedra_dataset
 from regolith_studio.dem.verification.certificate import Certificate, certificate_document, verifiable_engine
@@ -66,7 +66,7 @@ class CoulombEngine:
 
     share: float = 1.0
     gain: float = 0.0
-    Settings: type[Any] = RapierSettings
+    Settings: type[Any] = SubstepSettings
 
     def solver(self, prepared: PreparedCase, _settings: Any) -> CoulombSolver:
         return CoulombSolver(prepared, self.share * prepared.case.contact.static_friction, self.gain)

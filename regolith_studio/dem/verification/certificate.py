@@ -9,23 +9,25 @@ from regolith_studio.dem.verification import dice, heaps, scenes
 from regolith_studio.dem.verification.lines import MeasuredLine, Measurement, VerifiableEngine
 from regolith_studio.errors import InputError, MissingRequirement
 
-QUICK: Mapping[str, Measurement] = {
+SCENES: Mapping[str, Measurement] = {
     "incline": scenes.incline,
     "sliding": scenes.sliding,
     "fall": scenes.fall,
     "stack": scenes.stack,
+    "loose_dice": dice.loose_dice,
+    "tapped_dice": dice.tapped_dice,
+}
+HEAPS: Mapping[str, Measurement] = {
     "rest": heaps.settled_heap,
     "contacts": heaps.contacts,
     "repeats": heaps.repeats,
     "half_step": heaps.half_step,
-}
-LONG: Mapping[str, Measurement] = {
     "gravity": heaps.gravities,
-    "loose_dice": dice.loose_dice,
-    "tapped_dice": dice.tapped_dice,
 }
-"""Measurements by key; those that a quick verification leaves out."""
-MEASUREMENTS: Mapping[str, Measurement] = {**QUICK, **LONG}
+"""Measurements by key: of the engine alone, and of heaps that several lines share."""
+QUICK = ("incline", "sliding", "fall", "stack", "rest", "contacts", "repeats", "half_step")
+MEASUREMENTS = (*QUICK, "gravity", "loose_dice", "tapped_dice")
+"""Keys in the order of a certificate; those of a quick verification come first."""
 
 
 @dataclass(frozen=True)
@@ -75,9 +77,9 @@ def measure_lines(
     engine: VerifiableEngine, keys: tuple[str, ...]
 ) -> Generator[tuple[str, MeasuredLine | None], None, Certificate]:
     """Measure lines; yields the key of the line at each turn, and the line as it is done."""
-    lines = []
+    lines, runs = [], heaps.HeapRuns(engine)
     for key in keys:
-        steps = MEASUREMENTS[key](engine)
+        steps = HEAPS[key](runs) if key in HEAPS else SCENES[key](engine)
         while True:
             try:
                 next(steps)

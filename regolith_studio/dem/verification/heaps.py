@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Generator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from regolith_studio.dem.lifting_cylinder import (
 )
 from regolith_studio.dem.run_io import SNAPSHOTS
 from regolith_studio.dem.separation import overlap_depths
+from regolith_studio.dem.snapshot import EngineState
 from regolith_studio.dem.verification.bodies import polyhedra_dataset
 from regolith_studio.dem.verification.lines import MeasuredLine, VerifiableEngine, timed
 
@@ -47,11 +48,36 @@ def heap_case(seed: int, gravity: float = EARTH) -> PreparedCase:
     return prepare(polyhedra_dataset(), ReposeCase(test, n_particles=N_PARTICLES, seed=seed))
 
 
+@dataclass(frozen=True, eq=False)
+class LiftedHeap:
+    """A heap at rest: its run, whose solver can go on, the state of its filling, and the result."""
+
+    run: LiftingRun
+    filled: EngineState
+    ending: SimulationResult
+
+
+@dataclass(eq=False)
+class HeapRuns:
+    """Heaps of one engine with its usual settings, each simulated once for all lines that need it."""
+
+    engine: VerifiableEngine
+    heaps: dict[int, LiftedHeap] = field(default_factory=dict)
+
+    def lifted(self, seed: int) -> Generator[None, None, LiftedHeap]:
+        """The heap of a seed."""
+        if seed not in self.heaps:
+            run = _begun(self.engine, heap_case(seed))
+            yield from _turns(fill_cylinder(run))
+            filled = engine_state(run)
+            self.heaps[seed] = LiftedHeap(run, filled, (yield from _turns(lift_cylinder(run))))
+        return self.heaps[seed]
+
+
 @timed
-def settled_heap(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+def settled_heap(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """How far particles of a heap at rest move."""
-    run = _begun(engine, heap_case(0))
-    yield from _turns(simulate_lifting(run))
+    run = (yield from runs.lifted(0)).run
     before, end = run.solver.points.copy(), run.solver.time + AFTER_REST
     while run.solver.time < end:
         step = run.solver.time_step()
@@ -71,10 +97,10 @@ def settled_heap(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine
 
 
 @timed
-def contacts(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+def contacts(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """How deep the polyhedra of a heap at rest overlap, by separating axes and not by the engine's word."""
     prepared = heap_case(0)
-    heap = (yield from _turns(simulate_lifting(_begun(engine, prepared)))).particles
+    heap = (yield from runs.lifted(0)).ending.particles
     depths = overlap_depths(prepared, heap) / prepared.mean_diameter
     deep, deepest = float((depths > DEEP).mean()) if len(depths) else 0.0, float(depths.max(initial=0.0))
     return MeasuredLine(
@@ -89,13 +115,13 @@ def contacts(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
 
 
 @timed
-def repeats(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+def repeats(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """Whether one and two threads, and the same seed again, give the same heap to the last byte."""
-    heaps = []
-    for threads in (1, 2, 1):
+    heaps = [(yield from runs.lifted(0)).ending.particles]
+    for threads in (2, 1):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / SNAPSHOTS).mkdir()
-            running = run_engine(engine.key, heap_case(0), engine.Settings(), Path(folder), threads)
+            running = run_engine(runs.engine.key, heap_case(0), runs.engine.Settings(), Path(folder), threads)
             heaps.append((yield from _turns(running)).particles)
     apart = max(float(np.abs(each.points - heaps[0].points).max()) for each in heaps[1:])
     return MeasuredLine(
@@ -109,28 +135,28 @@ def repeats(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
 
 
 @timed
-def half_step(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+def half_step(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle with half the time step, of the same filling."""
     pairs = []
+    engine = runs.engine
     usual = engine.Settings()
     finer = replace(usual, time_step=usual.time_step / 2)
     for seed in SEEDS:
-        run = _begun(engine, heap_case(seed))
-        yield from _turns(fill_cylinder(run))
-        filled = engine_state(run)
-        ending = yield from _turns(lift_cylinder(run))
-        again = LiftingRun(run.prepared, finer, engine.solver(run.prepared, finer))
-        other = yield from _turns(resume_lifting(again, filled))
-        pairs.append((_angle(ending), _angle(other)))
+        heap = yield from runs.lifted(seed)
+        prepared = heap.run.prepared
+        again = LiftingRun(prepared, finer, engine.solver(prepared, finer))
+        other = yield from _turns(resume_lifting(again, heap.filled))
+        pairs.append((_angle(heap.ending), _angle(other)))
     return _paired_line(
         "half_step", "Change of the angle of repose with half the time step, same fillings", pairs
     )
 
 
 @timed
-def gravities(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+def gravities(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle under the gravity of the Moon against that of the Earth, with one step in seconds."""
     pairs = []
+    engine = runs.engine
     usual = engine.Settings()
     shorter = replace(usual, time_step=usual.time_step * (MOON / EARTH) ** 0.5)
     for seed in SEEDS:

@@ -6,8 +6,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
-from regolith_studio.dem.engines.rapier.settings import RapierSettings
-from regolith_studio.dem.lifting_cylinder import Solver
+from regolith_studio.dem.lifting_cylinder import Solver, SubstepSettings
 from regolith_studio.dem.stepped_engine import SteppedEngine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
@@ -33,7 +32,7 @@ class RapierEngine(SteppedEngine):
     label: str = "Rapier"
     order: int = 1
     licence: str = "Apache-2.0"
-    Settings: type[RapierSettings] = RapierSettings
+    Settings: type[SubstepSettings] = SubstepSettings
     capabilities: EngineCapabilities = REPRESENTS
     seconds_per_step: Mapping[str, float] = field(default_factory={"polyhedra": 10e-6, "spheres": 3e-6}.copy)
     """That of polyhedra measured at 1,000 particles of 20 facets."""
@@ -49,7 +48,7 @@ class RapierEngine(SteppedEngine):
         except PackageNotFoundError:
             return Availability(problem=N_("Rapier is not installed; install the package rapier3d."))
 
-    def solver(self, prepared: PreparedCase, settings: RapierSettings) -> Solver:
+    def solver(self, prepared: PreparedCase, settings: SubstepSettings) -> Solver:
         """Rapier with the particles of a case.
 
         Raises InputError if the case has what the solver does not represent.

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
-from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
+    SubstepSettings,
     Units,
     friction_in,
     halved_step,
@@ -53,7 +53,7 @@ what does not move, and 10) heaps at rest tremble and creep: half of their parti
 class RapierSolver:
     """Rapier's world: the particles, then the cylinder, then the plate."""
 
-    def __init__(self, prepared: PreparedCase, settings: RapierSettings) -> None:
+    def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
         self.prepared, self.settings = prepared, settings
         units = Units.of(prepared)
         self.unit_length, self.unit_time = units.length, units.time
@@ -158,7 +158,7 @@ class RapierSolver:
         numerics = self.world.integration_parameters
         numerics.dt = step
         numerics.num_solver_iterations = max(
-            1, round(self.settings.iterations * step / self.settings.time_step)
+            1, round(self.settings.substeps * step / self.settings.time_step)
         )
         for _ in range(count):
             self.world.step()
