@@ -109,6 +109,16 @@ Filling = Annotated[
         metavar="RUN",
     ),
 ]
+Bond = Annotated[
+    float | None,
+    typer.Option(
+        "--bond",
+        min=0.0,
+        max=1e4,
+        help="Cohesion as the pull-off force of two mean simulated particles over the weight of one.",
+        metavar="B",
+    ),
+]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an existing run in the folder.")]
 
 
@@ -234,6 +244,7 @@ def run(
     cohesion: Annotated[
         str, typer.Option("--cohesion", help="Cohesion: none, given or scaled.", metavar="C")
     ] = "none",
+    bond: Bond = None,
     filling: Filling = None,
     overwrite: Overwrite = False,
     json: Json = False,
@@ -248,7 +259,9 @@ def run(
         cohesion=cohesion,
         seed=seed,
     )
-    done = _simulate(dataset, output, request, filling, overwrite, jobs)
+    if bond is not None and cohesion != "none":
+        raise typer.BadParameter("Give either --bond or --cohesion.")
+    done = _simulate(dataset, output, request, bond, filling, overwrite, jobs)
     if json:
         print_json(done.document)
     else:
@@ -291,6 +304,7 @@ def drum(
     how: DrumOptions,
     coarse_graining: CoarseGraining = 0.0,
     spheres: Spheres = False,
+    bond: Bond = None,
     filling: Filling = None,
     overwrite: Overwrite = False,
     json: Json = False,
@@ -315,7 +329,7 @@ def drum(
         with usage_errors():
             turning = DrumRotation(rpm_of(froude, request.case.test), turns, moments)
         request = replace(request, case=replace(request.case, drum=turning))
-    done = _simulate(dataset, output, request, filling, overwrite, jobs)
+    done = _simulate(dataset, output, request, bond, filling, overwrite, jobs)
     if json:
         print_json(done.document)
     else:
@@ -323,18 +337,26 @@ def drum(
 
 
 def _simulate(
-    dataset: Path, output: Path, request: "ReposeRequest", filling: Path | None, overwrite: bool, jobs: int
+    dataset: Path,
+    output: Path,
+    request: "ReposeRequest",
+    bond: float | None,
+    filling: Path | None,
+    overwrite: bool,
+    jobs: int,
 ) -> "ReposeRun":
     """Run a case, with its notes before and after."""
     from dataclasses import replace
 
     from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
-    from regolith_studio.dem.case import prepare, scaling_report
+    from regolith_studio.dem.case import prepare, scaling_report, with_bond_number
     from regolith_studio.dem.run_io import with_filling
     from regolith_studio.jobs.repose_jobs import simulate_prepared
     from regolith_studio.jobs.runners.process_pool import cores
 
     prepared = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
+    if bond is not None:
+        prepared = with_bond_number(prepared, bond)
     print_errors(scaling_report(prepared).sentences)
     if filling is not None:
         prepared, notes = with_filling(prepared, filling)

@@ -307,6 +307,14 @@ def bond_number(surface_energy: float, diameter: float, density: float, gravity:
     return pull_off_force(surface_energy, diameter) / (density * np.pi / 6 * diameter**3 * gravity)
 
 
+def with_bond_number(prepared: PreparedCase, bond: float) -> PreparedCase:
+    """The case with the surface energy at which two mean simulated particles have this Bond number."""
+    contact, test = prepared.case.contact, prepared.case.test
+    energy = bond / bond_number(1.0, prepared.mean_diameter, contact.density, test.gravity)
+    contact = replace(contact, surface_energy=energy)
+    return replace(prepared, case=replace(prepared.case, contact=contact, cohesion="given"))
+
+
 def rayleigh_time(diameter: float, density: float, youngs_modulus: float, poissons_ratio: float) -> float:
     """Rayleigh time of a sphere, in s."""
     shear = youngs_modulus / (2 * (1 + poissons_ratio))

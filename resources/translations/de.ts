@@ -2512,12 +2512,12 @@
         <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion, Rollwiderstand; einfache Genauigkeit</translation>
     </message>
     <message>
-        <source>Hertz and Mindlin stiffness, cohesion; single precision</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Hertz and Mindlin stiffness, restitution, different static and dynamic friction</source>
         <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, verschiedene Haft- und Gleitreibung</translation>
+    </message>
+    <message>
+        <source>Hertz and Mindlin stiffness; single precision</source>
+        <translation>Steifigkeit nach Hertz und Mindlin; einfache Genauigkeit</translation>
     </message>
     <message>
         <source>Hertz with a reduced Young&apos;s modulus (recorded) and restitution; approximate with cohesion</source>
@@ -7626,6 +7626,10 @@
     <message>
         <source>one body of several convex parts, with mass and inertia of their union</source>
         <translation>ein Körper aus mehreren konvexen Teilen, mit Masse und Trägheit ihrer Vereinigung</translation>
+    </message>
+    <message>
+        <source>one pull-off force for each pair that touches, none on walls and plate</source>
+        <translation>eine Abreißkraft für jedes Paar, das sich berührt, keine an Wänden und Platte</translation>
     </message>
     <message>
         <source>open particles</source>

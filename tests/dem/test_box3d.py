@@ -8,10 +8,12 @@ from scipy.spatial.transform import Rotation
 
 pytest.importorskip("robox3d")
 
-from regolith_studio.dem.case import PreparedCase
+from robox3d._ffi import lib
+
+from regolith_studio.dem.case import PreparedCase, with_bond_number
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.engines.box3d.settings import Box3dSettings
 from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
+from regolith_studio.dem.lifting_cylinder import SubstepSettings
 from regolith_studio.dem.verification.bodies import cuboid, lowest_heights, random_polyhedron, scene
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
@@ -19,7 +21,7 @@ from regolith_studio.geometry.arrays import FloatArray
 
 def on_slope(prepared: PreparedCase, slope: float, heights: FloatArray) -> Box3dSolver:
     """Bodies at rest on a slope down x, `slope` in radians."""
-    solver = Box3dSolver(prepared, Box3dSettings())
+    solver = Box3dSolver(prepared, SubstepSettings())
     n = len(prepared)
     solver.begin("rest")
     places = np.column_stack([np.zeros(n), 3.0 * np.arange(n), heights])
@@ -106,7 +108,7 @@ def test_that_a_run_goes_on_from_its_state() -> None:
     prepared = scene([cuboid(1, 1, 1)], 0.5, 3)
     first = on_slope(prepared, 0.0, np.full(3, 2.0))
     first.advance(0.05, 20)
-    again = Box3dSolver(prepared, Box3dSettings())
+    again = Box3dSolver(prepared, SubstepSettings())
     again.phase = first.phase
     again.load(first.state())
     assert again.time == first.time
@@ -120,19 +122,41 @@ def test_that_too_many_facets_are_refused() -> None:
     sphere = directions / np.linalg.norm(directions, axis=1)[:, None]
     prepared = replace(scene([cuboid(1, 1, 1)], 0.5, 1), shapes=(0.6 * sphere,))
     with pytest.raises(InputError, match="at most 44 facets"):
-        Box3dSolver(prepared, Box3dSettings())
+        Box3dSolver(prepared, SubstepSettings())
 
 
-def test_that_cohesion_is_refused() -> None:
-    prepared = scene([cuboid(1, 1, 1)], 0.5, 1)
+def test_that_cohesion_of_compounds_is_refused() -> None:
+    prepared = replace(scene([cuboid(1, 1, 1)], 0.5, 1), parts=((8,),))
     sticky = replace(prepared, case=replace(prepared.case, cohesion="given"))
-    with pytest.raises(InputError, match="no cohesion"):
-        engine_named("box3d").solver(sticky, Box3dSettings())  # type: ignore[attr-defined]
+    with pytest.raises(InputError, match="convex particles only"):
+        engine_named("box3d").solver(sticky, SubstepSettings())  # type: ignore[attr-defined]
 
 
 def test_that_no_friction_between_particles_is_refused_where_the_plate_has_one() -> None:
     smooth = with_values(scene([cuboid(1, 1, 1)], 0.5, 1), static_friction=0.0)
     with pytest.raises(InputError, match="geometric mean"):
-        engine_named("box3d").solver(smooth, Box3dSettings())  # type: ignore[attr-defined]
+        engine_named("box3d").solver(smooth, SubstepSettings())  # type: ignore[attr-defined]
     everywhere = with_values(smooth, wall_friction=0.0, plate_friction=0.0)
-    engine_named("box3d").solver(everywhere, Box3dSettings())  # type: ignore[attr-defined]
+    engine_named("box3d").solver(everywhere, SubstepSettings())  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("shapes", ["polyhedra", "spheres"])
+@pytest.mark.parametrize("bond", [1.0, 10.0])
+def test_that_a_doublet_parts_at_its_pull_off_force(shapes: str, bond: float) -> None:
+    """Two cubes or balls without gravity, pulled apart by 0.95 and 1.05 of Bond number times weight."""
+    prepared = with_bond_number(scene([cuboid(1, 1, 1)], 0.5, 2), bond)
+    case = replace(prepared.case, shapes=shapes)
+    side = (np.pi / 6) ** (1 / 3) if shapes == "polyhedra" else 1.0
+    for share, parted in ((0.95, False), (1.05, True)):
+        solver = Box3dSolver(replace(prepared, case=case), SubstepSettings())
+        solver.begin("rest")
+        solver.set_gravity(np.zeros(3))
+        solver.place(np.array([[0.0, 0.0, 10.0], [side, 0.0, 10.0]]), np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
+        solver.advance(0.05, 20)
+        for _ in range(400):
+            for body, sign in zip(solver.particles, (-1.0, 1.0), strict=True):
+                lib.b3Body_ApplyForceToCenter(body, (sign * share * bond * np.pi / 6, 0.0, 0.0), True)
+            solver.advance(0.05, 1)
+        gap = float(np.linalg.norm(np.diff(solver.points, axis=0))) - side
+        assert bool(gap > 1.0) is parted
+        assert gap > -0.05

@@ -6,8 +6,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
-from regolith_studio.dem.engines.box3d.settings import Box3dSettings
-from regolith_studio.dem.lifting_cylinder import Solver
+from regolith_studio.dem.lifting_cylinder import Solver, SubstepSettings
 from regolith_studio.dem.stepped_engine import SteppedEngine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
@@ -16,10 +15,10 @@ REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves, of at most 44 facets"),
     normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
-    cohesion=N_("none"),
+    cohesion=N_("one pull-off force for each pair that touches, none on walls and plate"),
     rolling=N_("resistance to rolling and spinning"),
     coarse_graining=N_("by size"),
-    missing=N_("Hertz and Mindlin stiffness, cohesion; single precision"),
+    missing=N_("Hertz and Mindlin stiffness; single precision"),
     compounds=N_("one body of several convex parts, with mass and inertia of their union"),
     drum=N_("a closed ring of boxes and two end plates that turn"),
 )
@@ -33,7 +32,7 @@ class Box3dEngine(SteppedEngine):
     label: str = "Box3D"
     order: int = 2
     licence: str = "MIT"
-    Settings: type[Box3dSettings] = Box3dSettings
+    Settings: type[SubstepSettings] = SubstepSettings
     capabilities: EngineCapabilities = REPRESENTS
     seconds_per_step: Mapping[str, float] = field(default_factory={"polyhedra": 10e-6, "spheres": 3e-6}.copy)
     exponent: float = 0.1
@@ -46,13 +45,13 @@ class Box3dEngine(SteppedEngine):
         except PackageNotFoundError:
             return Availability(problem=N_("Box3D is not installed; install the package robox3d."))
 
-    def solver(self, prepared: PreparedCase, settings: Box3dSettings) -> Solver:
+    def solver(self, prepared: PreparedCase, settings: SubstepSettings) -> Solver:
         """Box3D with the particles of a case.
 
         Raises InputError if the case has what the solver does not represent.
         """
-        if prepared.surface_energy > 0.0:
-            raise InputError("Box3D has no cohesion; take LAMMPS, or cohesion none.")
+        if prepared.surface_energy > 0.0 and prepared.parts and prepared.case.shapes == "polyhedra":
+            raise InputError("Box3D has cohesion between convex particles only; take cohesion none.")
         case = prepared.case
         if case.contact.static_friction == 0.0 < max(case.test.wall_friction, case.test.plate_friction):
             raise InputError(

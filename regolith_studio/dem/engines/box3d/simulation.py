@@ -10,9 +10,10 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
-from regolith_studio.dem.engines.box3d.settings import Box3dSettings
+from regolith_studio.dem.engines.box3d.cohesion import Cohesion
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
+    SubstepSettings,
     Units,
     friction_in,
     halved_step,
@@ -51,7 +52,7 @@ REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of th
 class Box3dSolver:
     """Box3D's world: the particles, the cylinder, the plate."""
 
-    def __init__(self, prepared: PreparedCase, settings: Box3dSettings) -> None:
+    def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
         self.prepared, self.settings = prepared, settings
         units = Units.of(prepared)
         self.unit_length, self.unit_time = units.length, units.time
@@ -77,6 +78,7 @@ class Box3dSolver:
             inertias.append(forms.inertia(kind, float(size)))
             self.particles.append(body)
         self.identifiers = ffi.new("b3BodyId[]", self.particles)
+        self.cohesion = Cohesion(prepared, self.particles, self.shapes) if prepared.surface_energy else None
         self.masses, self.inertias = (prepared.scales / length) ** 3, np.array(inertias)
         self.cylinder = self._body(lib.b3_kinematicBody, np.zeros(3), IDENTITY)
         test = prepared.case.test
@@ -187,7 +189,11 @@ class Box3dSolver:
 
     def advance(self, step: float, count: int) -> None:
         substeps = max(1, round(self.settings.substeps * step / self.settings.time_step))
-        SHIM.rxWorldStepN(self.world, step, substeps, count)
+        at_once = count if self.cohesion is None else 1
+        for _ in range(count // at_once):
+            if self.cohesion is not None:
+                self.cohesion.pull()  # Box3D forgets forces after a step
+            SHIM.rxWorldStepN(self.world, step, substeps, at_once)
         self.time += count * step
         if not np.isfinite(self._velocities()).all():
             raise RegolithError(
