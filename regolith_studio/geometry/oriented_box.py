@@ -178,7 +178,9 @@ def _axes_of_thinned(points: FloatArray) -> FloatArray:
 def _farthest_in_cells(points: FloatArray, cell: float) -> FloatArray:
     """Of the points in each cell of a cubic grid, the one farthest from the middle."""
     order = np.argsort(-(points**2).sum(axis=1), kind="stable")
-    _, first = np.unique(np.floor(points[order] / cell), axis=0, return_index=True)
+    cells = np.floor(points[order] / cell).astype(np.int64)
+    n_cells = np.ptp(cells, axis=0) + 1
+    _, first = np.unique(np.ravel_multi_index((cells - cells.min(axis=0)).T, n_cells), return_index=True)
     return points[order[np.sort(first)]]
 
 

@@ -45,8 +45,12 @@ def test_that_volume_and_centroid_agree_with_monte_carlo() -> None:
     assert stone.hull.centroid == pytest.approx(points[inside].mean(axis=0), abs=0.01)
 
 
+@pytest.mark.parametrize("many", [10, 10**9], ids=["sorted", "as given"])
 @pytest.mark.parametrize("seed", range(4))
-def test_that_the_hull_agrees_with_scipy_and_faces_outwards(seed: int) -> None:
+def test_that_the_hull_agrees_with_scipy_and_faces_outwards(
+    seed: int, many: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("regolith_studio.geometry.mesh.MANY_VERTICES", many)
     stone = folded_stone(seed)
     other = ConvexHull(stone.vertices)
     assert stone.hull.volume == pytest.approx(other.volume, rel=1e-12)
