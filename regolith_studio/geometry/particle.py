@@ -34,6 +34,20 @@ class Source:
 
 
 @dataclass(frozen=True)
+class ScanOfGrain:
+    """What the errors of a grain depend on besides its form.
+
+    - ``across``: diameter in voxels of the ball of its volume; beyond the ends of the table those hold.
+    - ``noise``: as a share of the contrast.
+    - ``follows_grey``: whether the surface follows the grey values, or is the mask's scaled to their volume.
+    """
+
+    across: float
+    noise: float
+    follows_grey: bool
+
+
+@dataclass(frozen=True)
 class Particle:
     """One particle, ready to be measured.
 
@@ -54,6 +68,8 @@ class Particle:
         left out because the border of a scan cut them (Miles and Lantuejoul).
     repair
         Health before and after the repair, and what was done; ``None`` if the mesh was not repaired.
+    scan
+        Of a grain whose surface was made from grey values: what the errors of its descriptors depend on.
     """
 
     name: str
@@ -63,6 +79,7 @@ class Particle:
     notes: tuple[str, ...] = field(default=())
     weight: float = 1.0
     repair: "Repair | None" = field(default=None, compare=False, repr=False)
+    scan: ScanOfGrain | None = None
 
     @property
     def is_synthetic(self) -> bool:

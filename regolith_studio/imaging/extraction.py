@@ -18,9 +18,8 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.geometry.particle import Particle, ScanOfGrain, Source
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
-from regolith_studio.imaging.grain_errors import ScanOfGrain
 from regolith_studio.imaging.grain_surface import (
     MARGIN,
     clipped_share,
@@ -61,7 +60,6 @@ class ExtractedParticle:
     - ``label``, ``n_voxels``: its number in the volume, and its size there.
     - ``weight``: Miles-Lantuejoul weight (:func:`border_weight`), 1 where border grains are kept.
     - ``surface``: what its surface was taken from: of the mask, too, where the grey values do not tell it.
-    - ``scan``: what its surface was made from, where that is of the grey values.
     """
 
     particle: Particle
@@ -69,7 +67,6 @@ class ExtractedParticle:
     n_voxels: int
     weight: float
     surface: Surface = "mask"
-    scan: ScanOfGrain | None = None
 
 
 @dataclass(frozen=True)
@@ -403,15 +400,16 @@ def _particle_of(
 ) -> Any:
     """The particle of a label, or what is made of it."""
     mesh, notes, surface, scan = surface_of_label(cut)
-    particle = Particle(cut.name, mesh, group, source, notes, cut.weight)
-    extracted = ExtractedParticle(particle, cut.label, cut.n_voxels, cut.weight, surface, scan)
+    particle = Particle(cut.name, mesh, group, source, notes, cut.weight, scan=scan)
+    extracted = ExtractedParticle(particle, cut.label, cut.n_voxels, cut.weight, surface)
     return extracted if make is None else make(extracted)
 
 
 def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface, ScanOfGrain | None]:
     """Surface in micrometres, notes on it, what it was taken from, and its size and noise in the scan.
 
-    It is of the grey values where they are at hand and tell it, else of the mask.
+    It is of the grey values where they are at hand and tell it, else of the mask. Size and noise are left out
+    where the scan was clipped, which moves the surface by more than noise does.
     """
     settings = cut.settings
     if cut.grey is None:
@@ -441,7 +439,7 @@ def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface, Sca
         cut.placed(found.mesh, cut.wider),
         tuple(notes),
         "grey",
-        found.scan,
+        None if clipped > _MAX_CLIPPED else found.scan,
     )
 
 

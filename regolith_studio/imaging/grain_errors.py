@@ -6,13 +6,13 @@ The table is ``grain_errors.json`` among the results of the benchmarks, by voxel
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Literal, get_args
 
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.particle import Particle, ScanOfGrain
 from regolith_studio.resources import results_folder
 
 KEYS = ("volume", "surface_area", "sphericity", "min_diameter", "max_diameter")
@@ -25,20 +25,6 @@ _NUMBERS = 3
 """Of each descriptor in a row of the table: mean error and both ends of its interval, in percent."""
 
 
-@dataclass(frozen=True)
-class ScanOfGrain:
-    """What the errors of a grain depend on besides its form.
-
-    - ``across``: diameter in voxels of the ball of its volume; beyond the ends of the table those hold.
-    - ``noise``: as a share of the contrast.
-    - ``follows_grey``: whether the surface follows the grey values, or is the mask's scaled to their volume.
-    """
-
-    across: float
-    noise: float
-    follows_grey: bool
-
-
 def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tuple[float, float]]:
     """Between which values the true ones lie in 90 % of grains, by key; nothing where too few were found.
 
@@ -49,6 +35,13 @@ def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tup
     if not np.isfinite(low).all():
         return {}
     return {key: (measured[key] / (1 + high[k]), measured[key] / (1 + low[k])) for k, key in enumerate(KEYS)}
+
+
+def stated_intervals(
+    particle: Particle, measured: Mapping[str, float] | None
+) -> dict[str, tuple[float, float]]:
+    """:func:`intervals` of a grain by its key; nothing where its surface is not of grey values."""
+    return {} if particle.scan is None or measured is None else intervals(measured, particle.scan)
 
 
 def follows_grey(across: float, noise: float) -> bool:

@@ -23,8 +23,9 @@ from scipy import ndimage
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import ScanOfGrain
 from regolith_studio.imaging.contours import body_contour, contour, depth, windowed_sinc, with_volume
-from regolith_studio.imaging.grain_errors import ScanOfGrain, follows_grey
+from regolith_studio.imaging.grain_errors import follows_grey
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.rim_levels import CONTACT, PRESMOOTHING, RIM, grain_shares
 from regolith_studio.imaging.surface_refinement import (

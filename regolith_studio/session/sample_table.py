@@ -9,11 +9,12 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import distribution, zingg_class
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_hint
+from regolith_studio.imaging.grain_errors import stated_intervals
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.model_jobs import is_origin
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
-from regolith_studio.session.outputs.measurements import descriptor_table
+from regolith_studio.session.outputs.measurements import descriptor_table, interval_cells
 from regolith_studio.session.results import ParticleEntry
 
 QUANTILES = (0.1, 0.5, 0.9)
@@ -125,7 +126,7 @@ def statistics_of_keys(
 def sample_table(entries: Iterable[ParticleEntry]) -> Table:
     """Every descriptor of the particles that have been measured, with units, as the CSV file has it.
 
-    Where particles have weights, these are the last column.
+    The intervals of grains of scans follow, and weights where there are some.
     """
     measured = [(entry, entry.health) for entry in entries if entry.health is not None]
     named = [replace(entry.particle, name=entry.id) for entry, _health in measured]
@@ -133,10 +134,17 @@ def sample_table(entries: Iterable[ParticleEntry]) -> Table:
         MeasuredParticle(health, entry.descriptors, visibility=entry.visibility) for entry, health in measured
     ]
     table = descriptor_table(named, facts)
-    if not has_weights(entry for entry, _health in measured):
-        return table
-    rows = tuple((*row, each.weight) for row, each in zip(table.rows, named, strict=True))
-    return Table(table.title, (*table.columns, Column("weight")), rows)
+    more: list[dict[Column, float]] = [interval_cells(intervals_of(entry)) for entry, _health in measured]
+    if has_weights(entry for entry, _health in measured):
+        more = [cells | {Column("weight"): each.weight} for cells, each in zip(more, named, strict=True)]
+    columns = tuple(dict.fromkeys(column for cells in more for column in cells))
+    rows = tuple((*row, *map(cells.get, columns)) for row, cells in zip(table.rows, more, strict=True))
+    return Table(table.title, (*table.columns, *columns), rows)
+
+
+def intervals_of(entry: ParticleEntry) -> dict[str, tuple[float, float]]:
+    """Between which values descriptors of a grain of a scan lie in 90 % of cases, as far as that is known."""
+    return stated_intervals(entry.particle, entry.descriptors)
 
 
 @dataclass(frozen=True)

@@ -8716,6 +8716,10 @@
         <translation>{value} × Partikelgröße (Artikel: {limit})</translation>
     </message>
     <message>
+        <source>{value}; {low} to {high} in 90 % of grains of this size and noise</source>
+        <translation>{value}; {low} bis {high} in 90 % der Körner dieser Größe und dieses Rauschens</translation>
+    </message>
+    <message>
         <source>{who}, dashboard at {link}</source>
         <translation>{who}, Übersicht unter {link}</translation>
     </message>

@@ -122,6 +122,7 @@ def test_that_a_grain_whose_grey_values_are_clipped_says_so() -> None:
         (found,) = extract_particles(labels, GREY, grey=grey).found
         said = "have the grey value 255, where the scan was clipped" in " ".join(found.particle.notes)
         assert said == clipped
+        assert (found.particle.scan is None) == clipped, "no interval holds the error of a clipped grain"
 
 
 @pytest.mark.parametrize("noise", [0.25, 0.33])

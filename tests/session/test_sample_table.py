@@ -9,8 +9,9 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
-from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.particle import Particle, ScanOfGrain
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.imaging.grain_errors import intervals
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import (
     EVERYTHING,
@@ -147,3 +148,15 @@ def test_that_statistics_of_several_descriptors_name_them_with_their_units(
     table = statistics_of_keys(sample, ["volume", "sphericity"])
     assert table.column("descriptor") == ("volume [um^3]",) * 3 + ("sphericity",) * 3
     assert table.rows[2][1:] == statistics_table(sample, "volume").rows[2]
+
+
+def test_that_the_table_holds_the_intervals_of_grains_of_scans(sample: tuple[ParticleEntry, ...]) -> None:
+    scan = ScanOfGrain(18.0, 0.1, follows_grey=True)
+    grain = replace(sample[1], particle=replace(sample[1].particle, scan=scan))
+    table = sample_table((sample[0], grain))
+    (other, low), (nothing, high) = table.column("volume_low"), table.column("volume_high")
+    assert grain.descriptors is not None
+    assert (low, high) == intervals(grain.descriptors, scan)["volume"]
+    assert low < grain.descriptors["volume"] < high
+    assert other is nothing is None
+    assert "volume_low" not in [column.name for column in sample_table(sample).columns]

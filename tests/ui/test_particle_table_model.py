@@ -6,9 +6,12 @@ import pytest
 from PySide6.QtCore import QItemSelectionModel, Qt
 from PySide6.QtTest import QAbstractItemModelTester
 
-from regolith_studio.geometry.particle import Particle
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.geometry.particle import Particle, ScanOfGrain
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.imaging.grain_errors import intervals
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.table import (
     RIGHT,
     UNSORTED,
@@ -122,4 +125,19 @@ def test_that_numbers_that_are_not_known_yet_stand_below_all_others(app):
     assert listed(made) == "udcbae"
     assert made.index(0, 1).data() == "…"
     assert made.index(0, 1).data(Qt.ItemDataRole.TextAlignmentRole) == RIGHT
+    made.deleteLater()
+
+
+def test_that_the_tool_tip_of_a_number_states_the_interval_of_a_grain_of_a_scan(app):
+    scan = ScanOfGrain(18.0, 0.1, follows_grey=True)
+    facts = describe(MESH)
+    low, high = map(short_number, intervals(facts, scan)["volume"])
+    made = ParticleTableModel(particle_columns("name", "volume", "aspect_ratio"), app)
+    grain = ParticleEntry("a", Particle("a", MESH, scan=scan), None, facts)
+    made.set_entries([grain, ParticleEntry("b", Particle("b", MESH), None, facts)])
+    role = Qt.ItemDataRole.ToolTipRole
+    of_scan, of_mesh = ([made.index(row, column).data(role) for column in (1, 2)] for row in (0, 1))
+    value, ratio = (short_number(facts[key]) for key in ("volume", "aspect_ratio"))
+    assert of_scan == [f"{value}; {low} to {high} in 90 % of grains of this size and noise", ratio]
+    assert of_mesh == [value, ratio]
     made.deleteLater()

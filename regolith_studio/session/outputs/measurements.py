@@ -86,6 +86,15 @@ def _soundness(particle: Particle, facts: MeasuredParticle) -> str:
     return "repaired" if particle.repair is not None and particle.repair.actions else "yes"
 
 
+def interval_cells(intervals: Mapping[str, tuple[float, float]]) -> dict[Column, float]:
+    """Columns of the ends of intervals, by key and unit."""
+    return {
+        Column(f"{key}_{end}", CATALOGUE[key].unit): value
+        for key, ends in intervals.items()
+        for end, value in zip(("low", "high"), ends, strict=True)
+    }
+
+
 class TableItem(Protocol):
     """Anything that a row of a table can be about."""
 

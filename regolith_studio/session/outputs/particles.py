@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.dataset.build import software_versions
-from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.imaging.extraction import ExtractedParticle
-from regolith_studio.imaging.grain_errors import intervals
+from regolith_studio.imaging.grain_errors import stated_intervals
 from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.io.atomic import write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
@@ -29,7 +28,7 @@ from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.session.outputs.measurements import described, descriptor_table
+from regolith_studio.session.outputs.measurements import described, descriptor_table, interval_cells
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.protocol import FittedModel
@@ -63,24 +62,15 @@ def write_particle(folder: Path, extracted: ExtractedParticle, facts: MeasuredPa
         "weight": extracted.weight,
         "surface": extracted.surface,
     }
-    stated = _intervals(extracted, facts)
+    stated = stated_intervals(particle, facts.descriptors)
     row = dict(zip(table.columns, table.rows[0], strict=True)) | {
         Column(name): value for name, value in (extra | {"notes": " ".join(particle.notes)}).items()
     }
-    for key, ends in stated.items():
-        unit = CATALOGUE[key].unit
-        row |= {Column(f"{key}_{end}", unit): value for end, value in zip(("low", "high"), ends, strict=True)}
+    row |= interval_cells(stated)
     entry = (
         described(particle, facts) | extra | {"intervals": {key: list(ends) for key, ends in stated.items()}}
     )
     return ParticleRecord(extracted.label, row, entry)
-
-
-def _intervals(extracted: ExtractedParticle, facts: MeasuredParticle) -> dict[str, tuple[float, float]]:
-    """Ends of the interval of each descriptor; nothing where its surface is not of grey values."""
-    if extracted.scan is None or facts.descriptors is None:
-        return {}
-    return intervals(facts.descriptors, extracted.scan)
 
 
 class ExtractionFolder:

@@ -24,7 +24,14 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, Descriptor
 from regolith_studio.io.file_names import natural_key
 from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
+from regolith_studio.session.sample_table import (
+    Filter,
+    form_of,
+    has_weights,
+    health_sentences,
+    health_word,
+    intervals_of,
+)
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr, translate
@@ -82,7 +89,7 @@ _ROLES = frozenset(
 
 @dataclass(frozen=True)
 class ParticleColumn:
-    """Key, header and tool tip of a column; functions for its sort key and text; numbers stand right."""
+    """Key, header and tool tip of a column; functions for its cells: sort key, text; numbers stand right."""
 
     key: str
     title: str
@@ -90,6 +97,8 @@ class ParticleColumn:
     value: Callable[[ParticleEntry], Any]
     text: Callable[[ParticleEntry], str]
     numeric: bool = False
+    note: Callable[[ParticleEntry], str] | None = None
+    """Tool tip of a cell, in place of its text."""
 
 
 def particle_columns(*keys: str) -> tuple[ParticleColumn, ...]:
@@ -117,8 +126,19 @@ def _descriptor_column(row: Descriptor) -> ParticleColumn:
     def text(entry: ParticleEntry) -> str:
         return short_number(entry.descriptors[row.key]) if entry.descriptors else "…"
 
+    def note(entry: ParticleEntry) -> str:
+        if row.key not in (ends := intervals_of(entry)):
+            return text(entry)
+        low, high = map(short_number, ends[row.key])
+        return tr(
+            "{value}; {low} to {high} in 90 % of grains of this size and noise",
+            value=text(entry),
+            low=low,
+            high=high,
+        )
+
     title = plain_symbol(row.symbol) + row.unit_suffix
-    return ParticleColumn(row.key, title, definition(row.key), value, text, numeric=True)
+    return ParticleColumn(row.key, title, definition(row.key), value, text, numeric=True, note=note)
 
 
 def _weight_column() -> ParticleColumn:
@@ -196,7 +216,7 @@ class ParticleTableModel(QAbstractTableModel):
             case Qt.ItemDataRole.DecorationRole if has_icon:
                 return self._icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return self._health(entry) if has_icon else inert(column.text(entry))
+                return self._health(entry) if has_icon else inert((column.note or column.text)(entry))
             case Qt.ItemDataRole.TextAlignmentRole if column.numeric:
                 return RIGHT
         return None
