@@ -455,7 +455,7 @@ def verify(
 ) -> None:
     """Verify an engine: friction, energy, rest, contacts, time step, gravity, packings of dice."""
     from regolith_studio.dem.verification.certificate import certificate_document
-    from regolith_studio.jobs.repose_verification import verify_engine
+    from regolith_studio.jobs.repose_jobs import verify_engine
 
     with usage_errors():
         done = run_with_progress(verify_engine(engine, quick))

@@ -25,6 +25,7 @@ from regolith_studio.dem.run_io import (
     staged_run,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
+from regolith_studio.dem.verification.certificate import MEASUREMENTS, QUICK, measure_lines, verifiable_engine
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.messages import N_
@@ -243,3 +244,24 @@ def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:
         return measure_repose(pile.points, pile.diameters, evaluation)
     except NotAPileError as refusal:
         return refusal
+
+
+def verify_engine(key: str, quick: bool = False) -> Steps:
+    """Measure the lines of an engine, each a :class:`Partial` when it is done; returns a
+    :class:`~regolith_studio.dem.verification.certificate.Certificate`.
+
+    ``key``: of the engine. ``quick``: leave out what takes more than minutes: gravity and dice.
+    """
+    engine = verifiable_engine(key)
+    keys = QUICK if quick else MEASUREMENTS
+    yield Started(N_("Verifying the engine"), len(keys))
+    steps, done = measure_lines(engine, keys), 0
+    while True:
+        try:
+            name, line = next(steps)
+        except StopIteration as end:
+            return end.value
+        if line is not None:
+            done += 1
+            yield Partial(line)
+        yield Progress(done, len(keys), name)

@@ -1,6 +1,6 @@
 """Pictures of one particle at several degrees (Fig. 2), and animated files: GIF, WebP, several PNG files."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -9,14 +9,18 @@ import numpy as np
 import pyvista as pv
 from PIL import Image
 
-from regolith_studio.errors import InputError
+from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.errors import FileError, InputError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
+from regolith_studio.io.atomic import hidden_folder
+from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.jobs.executor import open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
 from regolith_studio.scene.cameras import TURN, CameraPose, orbited
-from regolith_studio.scene.figure import Picture
+from regolith_studio.scene.figure import Picture, three_views
 from regolith_studio.scene.shapes import LABELS, SceneShape, show_shape
 
 KINDS = (".gif", ".webp", ".png")
@@ -215,3 +219,76 @@ def _fill(plotter: Any, surface: Mesh | None, title: str, *, is_particle: bool) 
     else:
         surfaces.show_fit(plotter, surface)
     annotations.show_title(plotter, title)
+
+
+LEVEL = 4
+_PROCESSES = 2
+"""More than one, or the executor would draw in this thread; only one is started."""
+
+
+def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path) -> Steps:
+    """Write a GIF or WebP of the fit growing through `degrees`; returns its path."""
+    yield from _apart(N_("Drawing the animation"), path, _animation, particle, fit, tuple(degrees))
+    return path
+
+
+def turn(shapes: Sequence[SceneShape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
+    """Write a GIF or WebP of the bodies turning once; returns its path."""
+    yield from _apart(N_("Drawing the turntable"), path, _turn, tuple(shapes), pose, scale)
+    return path
+
+
+def draw_figure(
+    particle: Mesh,
+    fit: Mesh,
+    coarsened: CoarseningResult,
+    titles: tuple[str, str, str],
+    path: Path,
+    scale: int,
+    pose: CameraPose,
+    transparent: bool,
+) -> Steps:
+    """Write the figure of the three views as PNG; returns its path."""
+    arguments = (particle, fit, coarsened, titles, scale, pose, transparent)
+    yield from _apart(N_("Drawing the figure"), path, _figure, *arguments)
+    return path
+
+
+def _apart(title: str, path: Path, draw: Callable[..., None], *arguments: Any) -> Steps:
+    yield Started(title)
+    with open_executor(_PROCESSES) as executor:
+        results = yield from executor.run_all([Job(write_drawn, (title, path, draw, arguments))], [path.name])
+    return value_of(results[0])
+
+
+def write_drawn(title: str, path: Path, draw: Callable[..., None], arguments: tuple[Any, ...]) -> Steps:
+    """Call ``draw(path, *arguments)``; its files take their places once all are complete. A job."""
+    yield Started(title)
+    try:
+        with hidden_folder(path) as stage:
+            draw(stage / path.name, *arguments)
+            for drawn in sorted(stage.iterdir()):
+                drawn.replace(path.with_name(drawn.name))
+    except OSError as error:
+        raise FileError(f"The file {path} cannot be written ({os_error_reason(error)}).") from error
+
+
+def _animation(path: Path, particle: Mesh, fit: HarmonicFit, degrees: tuple[int, ...]) -> None:
+    degree_animation(particle, fit, degrees, path, LEVEL)
+
+
+def _turn(path: Path, shapes: tuple[SceneShape, ...], pose: CameraPose | None, scale: int) -> None:
+    turntable(shapes, pose, path, scale=scale)
+
+
+def _figure(
+    path: Path,
+    particle: Mesh,
+    fit: Mesh,
+    coarsened: CoarseningResult,
+    titles: tuple[str, str, str],
+    scale: int,
+    pose: CameraPose,
+    transparent: bool,
+) -> None:
+    three_views(particle, fit, coarsened, titles, path, scale=scale, pose=pose, transparent=transparent)

@@ -20,8 +20,8 @@ from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.file_names import file_stem
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
+from regolith_studio.scene.animation import animate, draw_figure, turn
 from regolith_studio.scene.figure import view_titles
-from regolith_studio.scene.picture_jobs import animate, draw_figure, turn
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews

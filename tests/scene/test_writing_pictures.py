@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.scene.picture_jobs import write_drawn
+from regolith_studio.scene.animation import write_drawn
 
 
 def draw_frames(path: Path, count: int, fails: bool) -> None:
