@@ -51,6 +51,23 @@ def calibrate(
         float,
         typer.Option("--bulk-density-error", min=0.0, max=3e4, help="Its standard error.", metavar="E"),
     ] = 20.0,
+    drum_angle: Annotated[
+        float | None,
+        typer.Option(
+            "--drum-angle",
+            min=1.0,
+            max=80.0,
+            help="Wanted dynamic angle of the usual rotating drum in degrees: every run turns one too.",
+            metavar="A",
+        ),
+    ] = None,
+    drum_angle_error: Annotated[
+        float,
+        typer.Option("--drum-angle-error", min=0.0, max=45.0, help="Its standard error.", metavar="E"),
+    ] = 1.0,
+    rpm: Annotated[
+        float, typer.Option("--rpm", min=1e-3, max=1e5, help="Of that drum, in a minute.", metavar="N")
+    ] = 10.0,
     parameter: Annotated[
         list[str] | None,
         typer.Option(
@@ -72,6 +89,7 @@ def calibrate(
     """Find contact parameters that give a wanted angle of repose; resumes a stopped calibration."""
     from dataclasses import replace
 
+    from regolith_studio.dataset.parameters import DrumRotation
     from regolith_studio.jobs.repose_calibration import (
         DEFAULT_RANGES,
         ReposeCalibrationRequest,
@@ -83,16 +101,22 @@ def calibrate(
         calibration_document,
         calibration_table,
         density_target,
+        drum_target,
     )
 
     check_results_folder(output, datasets)
     targets = [angle_target(angle, angle_error)]
     if bulk_density is not None:
         targets.append(density_target(bulk_density, bulk_density_error))
+    turning = None
+    if drum_angle is not None:
+        targets.append(drum_target(drum_angle, drum_angle_error))
+        with usage_errors():
+            turning = DrumRotation(rpm)
     base = replace(how.request(n_particles=particles, seed=seed), threads=jobs or cores())
     with usage_errors():
         request = ReposeCalibrationRequest(
-            tuple(datasets), _ranges(parameter) or DEFAULT_RANGES, tuple(targets), base, runs
+            tuple(datasets), _ranges(parameter) or DEFAULT_RANGES, tuple(targets), base, runs, turning
         )
     done = run_with_progress(calibration_steps(request, output))
     document = calibration_document(done)

@@ -8,6 +8,8 @@ from types import MappingProxyType
 from typing import cast
 
 from regolith_studio.dataset.folder_io import dataset_hash
+from regolith_studio.dataset.parameters import DRUM, DrumRotation
+from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.run_io import read_run
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import JOURNAL
@@ -32,6 +34,8 @@ from regolith_studio.studies.repose_calibration import (
     angle_target,
 )
 
+IN_DRUM = "_drum"
+"""End of the name of the folder with the drum of a run."""
 KIND = "calibration"
 """Of the folder in the journal, and of the list of files."""
 MAX_PARAMETERS = 3
@@ -49,6 +53,7 @@ class ReposeCalibrationRequest:
     - ``request``: of every run, but for the parameters; its seed is the first run's, and each run has the
       next one.
     - ``max_runs``: after which the calibration ends.
+    - ``drum``: how a drum turns that is simulated for every run too, where its angle is among the targets.
     """
 
     datasets: tuple[Path, ...]
@@ -56,6 +61,7 @@ class ReposeCalibrationRequest:
     targets: tuple[WantedResult, ...]
     request: ReposeRequest
     max_runs: int = 12
+    drum: DrumRotation | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= len(self.ranges) + (len(self.datasets) > 1) <= MAX_PARAMETERS:
@@ -66,6 +72,11 @@ class ReposeCalibrationRequest:
         names = Counter(folder.name for folder in self.datasets)
         if twice := [name for name, times in names.items() if times > 1]:
             raise InputError(f"Two datasets have the name {twice[0]}: give them different names.")
+        if self.drum is not None and not engine_named(self.request.engine).capabilities.drum:
+            others = [key for key, engine in ENGINES.items() if engine.capabilities.drum]
+            raise InputError(
+                f"The engine {self.request.engine} turns no drum; take one of {', '.join(others)}."
+            )
         for name, (low, high) in self.ranges.items():
             if name in CASE_KEYS:
                 raise InputError(f"{name} cannot be calibrated; a value of Table 1 or 2 can.")
@@ -172,6 +183,16 @@ def _variant(request: ReposeCalibrationRequest, number: int, values: Mapping[str
     return ReposeVariant("run", number + 1, request.datasets[int(values.get(DATASET, 0))], one)
 
 
+def _in_drum(request: ReposeCalibrationRequest, variant: ReposeVariant) -> ReposeVariant | None:
+    """The same particles in the usual drum under the same gravity, if the calibration has one."""
+    if request.drum is None:
+        return None
+    case = variant.request.case
+    test = replace(DRUM, gravity=case.test.gravity)
+    turned = replace(variant.request, case=replace(case, test=test, drum=request.drum))
+    return replace(variant, request=turned)
+
+
 def _earlier_run(
     request: ReposeCalibrationRequest, datasets: Mapping[str, int], folder: Path, number: int
 ) -> CalibrationRun | None:
@@ -193,7 +214,12 @@ def _earlier_run(
         raise FileError(
             f"{folder} holds a run of another dataset, engine, case or seed ({name}); choose another folder."
         )
-    return CalibrationRun(name, tuple(values.values()), document)
+    drum, turned = _in_drum(request, variant), None
+    if drum is not None:
+        turned = finished_run(study_place(folder, name + IN_DRUM, KIND), drum.dataset, drum.request)
+        if turned is None:
+            return None
+    return CalibrationRun(name, tuple(values.values()), document, turned)
 
 
 def _next_run(
@@ -204,19 +230,27 @@ def _next_run(
     names = [each.name for each in calibration.parameters]
     values = calibration.next_values
     variant = _variant(request, number, dict(zip(names, values, strict=True)))
-    steps = simulate_study_run(variant.dataset, folder / JOURNAL / KIND / name, variant.request)
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            document = end.value
-            break
-        if isinstance(step, Progress):
-            message = Message(N_("run {number}: {step}"), number=number + 1, step=step.message)
-            yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * request.max_runs, message)
-    if document["state"] == "failed" and not calibration.runs:
-        raise RegolithError(document["problem"])
-    return CalibrationRun(name, values, document)
+    documents = []
+    for suffix, each in (("", variant), (IN_DRUM, _in_drum(request, variant))):
+        if each is None:
+            continue
+        known = finished_run(study_place(folder, name + suffix, KIND), each.dataset, each.request)
+        place, total = folder / JOURNAL / KIND / (name + suffix), PROGRESS_STEPS * request.max_runs
+        steps = simulate_study_run(each.dataset, place, each.request)
+        while known is None:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                known = end.value
+                break
+            if isinstance(step, Progress):
+                message = Message(N_("run {number}: {step}"), number=number + 1, step=step.message)
+                yield Progress(PROGRESS_STEPS * number + step.done, total, message)
+        assert known is not None
+        if known["state"] == "failed" and not calibration.runs:
+            raise RegolithError(known["problem"])
+        documents.append(known)
+    return CalibrationRun(name, values, *documents)
 
 
 def _run_name(number: int) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.stats import norm
 from scipy.stats import t as student_t
 
 from regolith_studio.dem.angle_of_repose import NEIGHBOURHOOD
@@ -22,8 +23,8 @@ from regolith_studio.studies.calibration import (
 )
 from regolith_studio.version import __version__
 
-ANGLE, BULK_DENSITY = "angle", "bulk_density"
-UNITS = {ANGLE: "deg", BULK_DENSITY: "kg/m^3"}
+ANGLE, DRUM_ANGLE, BULK_DENSITY = "angle", "drum_angle", "bulk_density"
+UNITS = {ANGLE: "deg", DRUM_ANGLE: "deg", BULK_DENSITY: "kg/m^3"}
 DATASET = "dataset"
 """Parameter that is one of several datasets, by their names."""
 MAX_RELATIVE_WIDTH = 0.9
@@ -37,6 +38,11 @@ def angle_target(angle: float, error: float) -> WantedResult:
     return WantedResult(ANGLE, angle, error, scale=5.0, noise=1.7)
 
 
+def drum_target(angle: float, error: float) -> WantedResult:
+    """A wanted dynamic angle of a rotating drum and its standard error, in degrees."""
+    return WantedResult(DRUM_ANGLE, angle, error, scale=5.0, noise=1.7)
+
+
 def density_target(density: float, error: float) -> WantedResult:
     """A wanted bulk density of the filled cylinder and its standard error, in kg/m^3."""
     return WantedResult(BULK_DENSITY, density, error, scale=0.05 * density, noise=0.01 * density)
@@ -44,26 +50,33 @@ def density_target(density: float, error: float) -> WantedResult:
 
 @dataclass(frozen=True)
 class CalibrationRun:
-    """A run: the name of its folder, the values of the parameters, and its ``repose.json``."""
+    """A run: the name of its folder, the parameters, its ``repose.json``, and that of its drum if it has one."""
 
     folder: str
     values: tuple[float, ...]
     document: dict[str, Any]
+    drum: dict[str, Any] | None = None
 
     @property
     def measurement(self) -> dict[str, Any]:
         return self.document.get("measurement") or {"status": self.document["state"]}
 
+    @property
+    def drum_measurement(self) -> dict[str, Any]:
+        return (self.drum or {}).get("measurement") or {}
+
     def result(self, name: str) -> float:
-        """The angle in degrees or the bulk density of the filled cylinder in kg/m^3; NaN if there is none."""
-        if name == ANGLE:
-            angle = self.measurement.get("angle_deg")
+        """An angle in degrees or the bulk density of the filled cylinder in kg/m^3; NaN if there is none."""
+        if name != BULK_DENSITY:
+            angle = (self.measurement if name == ANGLE else self.drum_measurement).get("angle_deg")
             return np.nan if angle is None else float(angle)
         density = (self.document.get("packing") or {}).get("filled_bulk_density")
         return np.nan if density is None else float(density)
 
     def error(self, name: str) -> float:
         """Standard deviation of a result, from the interval of the angle; NaN where a run states none."""
+        if name == DRUM_ANGLE and (ends := self.drum_measurement.get("interval_deg")):
+            return float((ends[1] - ends[0]) / 2 / norm.ppf(0.5 + self.drum_measurement["confidence"] / 2))
         interval = self.measurement.get("interval_deg")
         if name != ANGLE or interval is None:
             return np.nan
@@ -170,6 +183,7 @@ def calibration_table(calibration: ReposeCalibration) -> Table:
         Column("interval_low", "deg"),
         Column("interval_high", "deg"),
         Column(BULK_DENSITY, UNITS[BULK_DENSITY]),
+        *(Column(each.name, "deg") for each in calibration.targets if each.name == DRUM_ANGLE),
     )
     return Table(N_("Calibration"), columns, tuple(_row(run, calibration) for run in calibration.runs))
 
@@ -183,6 +197,7 @@ def _row(run: CalibrationRun, calibration: ReposeCalibration) -> tuple[Cell, ...
         run.result(ANGLE),
         *run.measurement.get("interval_deg", (None, None)),
         run.result(BULK_DENSITY),
+        *(run.result(each.name) for each in calibration.targets if each.name == DRUM_ANGLE),
     )
 
 

@@ -14,14 +14,20 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dataset.parameters import DrumRotation
+from regolith_studio.dem.case import ReposeCase
 from regolith_studio.dem.engine import SimulationResult
-from regolith_studio.dem.run_io import find_runs
+from regolith_studio.dem.run_io import case_document, find_runs
 from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.jobs import repose_jobs
-from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs import repose_calibration, repose_jobs
+from regolith_studio.jobs.events import Started, Steps, result_of
+from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, calibration_steps
+from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.studies.figures import repose as figures
+from regolith_studio.studies.repose_calibration import angle_target, calibration_document, drum_target
 from tests.dem.cone_engine import cone_engine, true_angle
 from tests.dem.interrupted_study import tree, write_figure
 
@@ -219,3 +225,37 @@ def test_that_the_figure_shows_every_parameter(calibrated: Command, tmp_path: Pa
     assert (static["name"], rolling["name"]) == ("static_friction", "rolling_friction")
     assert static["informed"] is (static["relative_width"] <= 0.9) is (static["density"] is not None)
     assert (tmp_path / "found" / "calibration.png").is_file()
+
+
+def test_that_two_angles_find_two_parameters_and_are_data_afterwards(
+    boxes_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Angles that are linear in friction and rolling resistance, each in its own way."""
+    places = []
+
+    def simulated(_dataset: Path, place: Path, request: ReposeRequest) -> Steps:
+        yield Started("")
+        places.append(place.name)
+        contact, turned = request.case.contact, request.case.drum is not None
+        weights = (20.0, 30.0) if turned else (30.0, 10.0)
+        angle = 10.0 + weights[0] * contact.static_friction + weights[1] * contact.rolling_friction
+        return {
+            "state": "finished",
+            "case": case_document(request.case),
+            "measurement": {"status": "drum" if turned else "pile", "angle_deg": angle},
+        }
+
+    monkeypatch.setattr(repose_calibration, "simulate_study_run", simulated)
+    monkeypatch.setattr(repose_calibration, "write_calibration", lambda *_: [])
+    targets = (angle_target(10.0 + 18.0 + 3.0, 0.5), drum_target(10.0 + 12.0 + 9.0, 0.5))  # at 0.6 and 0.3
+    ranges = {"static_friction": (0.2, 1.0), "rolling_friction": (0.0, 0.6)}
+    base = ReposeRequest(ReposeCase(n_particles=N), engine="box3d")
+    wanted = ReposeCalibrationRequest((boxes_folder,), ranges, targets, base, 12, DrumRotation())
+    done = result_of(calibration_steps(wanted, tmp_path / "found"))
+    assert places[:4] == ["run_01", "run_01_drum", "run_02", "run_02_drum"]
+    friction, rolling = calibration_document(done)["parameters"]
+    assert friction["interval"][0] < 0.6 < friction["interval"][1]
+    assert rolling["interval"][0] < 0.3 < rolling["interval"][1]
+    assert np.ptp(rolling["interval"]) < 0.3
+    with pytest.raises(InputError, match="turns no drum"):
+        replace(wanted, request=replace(base, engine="mujoco"))
