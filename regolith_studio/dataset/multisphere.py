@@ -148,8 +148,10 @@ def fit_spheres(shape: Polyhedron, count: int) -> FloatArray:
     spheres = np.column_stack([spheres[:, :3] - shape.centroid, spheres[:, 3]]) / size
     target = _moments_of(shape) / size ** (3 + _DEGREES)
     highest = 1 if len(spheres) < FEWEST_FOR_INERTIA else 2
+    # With few spheres the second moments are left free; they would pull spheres out of flat shapes.
     scaling = np.where(highest >= _DEGREES, _SCALING, 0.0)
     mismatch = _Mismatch.of(shape)
+    # A wide blur without moments first: hidden spheres would not find their way with a narrow one.
     spheres = mismatch.descended(spheres, WIDTHS[0], target, 0.0 * scaling)
     wanted = target.copy()
     for _ in range(ROUNDS):  # the method of multipliers, which takes out the error of the blur, too
@@ -245,8 +247,10 @@ def _bare_shares(spheres: FloatArray, k: int, directions: FloatArray) -> FloatAr
     By the angle between the point and the circle in which another sphere cuts this one, over the width of a
     patch.
     """
+    # A patch cut by a sphere counts by its share, not all or nothing: sums stay smooth in centres and radii.
     others = np.delete(spheres, k, axis=0)
     radius, apart = spheres[k, 3], others[:, :3] - spheres[k, :3]
+    # Two spheres about one centre have no direction between them; the cosine below is then beyond 1 or -1.
     distance = np.maximum(np.linalg.norm(apart, axis=1), 1e-12)
     cosine = (distance**2 + radius**2 - others[:, 3] ** 2) / (2 * distance * radius)
     others, apart, cosine = (
@@ -267,6 +271,7 @@ def sphere_fit_errors(shape: Polyhedron, spheres: FloatArray) -> SphereFitErrors
     union = union_moments(moved)
     solid = _moments_of(shape)
     low, high = _box(shape, spheres)
+    # Without scrambling, so that the same dataset always states the same errors.
     points = low + np.asarray(qmc.Sobol(3, scramble=False).random(ERROR_SAMPLES)) * (high - low)
     inside, covered = _depth(shape, points) <= 0.0, _covered(points, spheres)
     ratio = _principal_moments(union.values) / _principal_moments(solid)
@@ -319,6 +324,7 @@ class _Mismatch:
             jac=True,
             method="L-BFGS-B",
             bounds=[(None, None), (None, None), (None, None), (SMALLEST, None)] * len(spheres),
+            # Not converged: the multipliers change the problem in the next round anyway.
             options={"maxiter": ITERATIONS},
         )
         return np.asarray(answer.x).reshape(-1, 4)
@@ -335,6 +341,7 @@ class _Mismatch:
         total = float(self.signs @ share) + MOMENT_WEIGHT * float(off @ off)
         weights = self.signs + 2 * MOMENT_WEIGHT * self.monomials @ (scaling * off)
         slope = weights * share * (1.0 - share) / width
+        # The gradient by a centre has no direction at the centre itself.
         distance = np.maximum(spheres[nearest, 3] - depth, 1e-9)
         towards = (self.points - spheres[nearest, :3]) * (slope / distance)[:, None]
         columns = (*towards.T, slope)
@@ -355,7 +362,9 @@ def _with_moments(spheres: FloatArray, target: FloatArray, scaling: FloatArray) 
         if off < MATCHED:
             break
         slopes = (scaling[:, None, None] * union.gradient).reshape(10, -1)
+        # The least step, since 4 n unknowns are more than 10 equations; nearly dependent ones are left out.
         step = np.linalg.lstsq(slopes, missing, rcond=1e-4)[0].reshape(-1, 4)
+        # The moments are linear in small steps only: a whole step may overlap what it has just parted.
         spheres = spheres + step * min(1.0, LARGEST_STEP / max(np.abs(step).max(), 1e-12))
     union = union_moments(best)
     visible = union.gradient[0, :, 3] > 0.0  # the bare area

@@ -51,7 +51,9 @@ def measure_packing(
     The surface is the cone of the symmetric fits, cut off at the height of the heap.
     """
     d = measurement.mean_diameter
+    # The median: single particles that rolled far away do not move it.
     axis = np.array([*np.median(heap.points[:, :2], axis=0), measurement.base])
+    # The cone of one angle: the region has to have a closed form for the quasi-random points.
     slope = float(np.tan(np.radians(measurement.symmetric.mean)))
     apex = float(np.mean([each.symmetric.apex[1] for each in measurement.sections]))
     top = min(
@@ -68,10 +70,12 @@ def measure_packing(
         return None
     radius = (apex - PLATE_DISTANCE * d) / slope
     box = np.array([[-radius, -radius, PLATE_DISTANCE * d], [radius, radius, top]])
+    # Without scrambling, so that a run states the same fraction again.
     points = box[0] + Sobol(3, scramble=False).random(N_POINTS) * (box[1] - box[0])
     points = points[inside(points)] + axis
     return HeapPacking(
         solid_fraction=float(within_particles(prepared, heap, points).mean()),
+        # Every so many-th, not the first: particles lie in the order of their filling, hence by height.
         coordination_number=_contacts(prepared, heap, kernel[:: -(-len(kernel) // MAX_PARTICLES)], d),
         n_particles=len(kernel),
     )

@@ -34,9 +34,11 @@ def near_pairs(points: FloatArray, reach: FloatArray) -> IntArray:
 
     Each pair is found by its larger sphere, so that few large particles cost little among many small ones.
     """
+    # Twice its own radius reaches every smaller sphere that it may touch.
     neighbours = cKDTree(points).query_ball_point(points, 2.0 * reach)
     first = np.repeat(np.arange(len(points)), [len(each) for each in neighbours])
     second = np.fromiter((k for each in neighbours for k in each), dtype=np.int64, count=len(first))
+    # Equal spheres find each other: the index decides, so that each pair comes once.
     smaller = (reach[second] < reach[first]) | ((reach[second] == reach[first]) & (second < first))
     first, second = first[smaller], second[smaller]
     near = np.linalg.norm(points[first] - points[second], axis=1) < reach[first] + reach[second]
@@ -153,11 +155,13 @@ class _Forms:
 def _hull_arrays(corners: FloatArray) -> tuple[FloatArray, ...]:
     """The arrays of :class:`_Forms` of one body; edges within a facet are left out."""
     hull = ConvexHull(corners)
+    # Qhull gives a facet of k corners as k - 2 triangles with equations that differ in the last bits.
     planes = np.unique(np.round(hull.equations, 9), axis=0)
     face, opposite = np.nonzero(hull.neighbors > np.arange(len(hull.simplices))[:, None])
     beside = hull.neighbors[face, opposite]
     ends = hull.simplices[face[:, None], (opposite[:, None] + np.array([1, 2])) % 3]
     left, right = hull.equations[face, :3], hull.equations[beside, :3]
+    # An edge within a facet has no arc on the sphere of normals.
     real = np.linalg.norm(left - right, axis=1) > PARALLEL
     starts = corners[ends[real, 0]]
     ways = corners[ends[real, 1]] - starts
@@ -179,6 +183,7 @@ def _distances(one: _Forms, other: _Forms, between: FloatArray, limits: FloatArr
     behind = -(other.normals @ ways)[..., 0] - other.offsets
     behind += (other.normals @ one.vertices.transpose(0, 2, 1)).min(axis=2)
     gaps: FloatArray = np.maximum(ahead.max(axis=1), behind.max(axis=1))
+    # Facets alone part most pairs; the pairs of edges cost the square of their number.
     close = np.flatnonzero(gaps <= limits)
     which, distance = _edge_distances(one.chosen(close), other.chosen(close), between[close])
     np.maximum.at(gaps, close[which], distance)
@@ -195,11 +200,13 @@ def _edge_distances(one: _Forms, other: _Forms, between: FloatArray) -> tuple[In
     c, d = -other.left.transpose(0, 2, 1), -other.right.transpose(0, 2, 1)
     across_c, across_d = arc @ c, arc @ d
     across_a, across_b = (each @ other_arc.transpose(0, 2, 1) for each in (a, b))
+    # Both arcs cross, and on the same side of the sphere: the third condition excludes antipodes.
     crossing = (across_c * across_d < 0.0) & (across_a * across_b < 0.0) & (across_c * across_b > 0.0)
     which, i, j = np.nonzero(crossing)
     normals = np.cross(one.edges[which, i], other.edges[which, j])
     lengths = np.linalg.norm(normals, axis=1)
     outwards = np.einsum("pi,pi->p", normals, a[which, i] + b[which, i])
     gaps = other.starts[which, j] + between[which] - one.starts[which, i]
+    # The cross product of two edges may point into the first body.
     distance = np.einsum("pi,pi->p", normals, gaps) * np.sign(outwards)
     return which, np.where(lengths > PARALLEL, distance / np.maximum(lengths, PARALLEL), -np.inf)

@@ -60,6 +60,7 @@ def distances_among(measured: FloatArray, picks: IntArray) -> FloatArray:
 def _nearest(measured: FloatArray, row: FloatArray) -> tuple[float, int]:
     starts = row @ _axis_rotations(isqrt(len(row)) - 1)
     overlaps = starts @ measured.T
+    # The distance |s - m|^2 over rotations s of one row: |s| is the same, so that only these terms differ.
     pairs = np.argsort((overlaps - 0.5 * (measured**2).sum(axis=1)).ravel())[: -N_STARTS - 1 : -1]
     rotation, index = np.unravel_index(pairs, overlaps.shape)
     turned, goal = starts[rotation], measured[index]
@@ -73,10 +74,12 @@ def _nearest(measured: FloatArray, row: FloatArray) -> tuple[float, int]:
 def _best_small_turn(rows: FloatArray, goal: FloatArray) -> FloatArray:
     """Rotation vectors (p, 3) that bring rows nearest to the goal, to first order in the rotation."""
     slopes = np.stack([rows @ generator for generator in _generators(isqrt(rows.shape[1]) - 1)], axis=2)
+    # A body of revolution has a rotation that changes nothing: the matrix would be singular.
     normal = np.swapaxes(slopes, 1, 2) @ slopes + 1e-12 * np.eye(3)
     right = np.swapaxes(slopes, 1, 2) @ (goal - rows)[:, :, None]
     turns = np.linalg.solve(normal, right)[:, :, 0]
     lengths = np.linalg.norm(turns, axis=1, keepdims=True)
+    # The first order holds for small turns only; beyond, a step may lead to another minimum.
     return np.asarray(turns * np.minimum(1.0, MAX_TURN / np.maximum(lengths, 1e-300)))
 
 
@@ -164,9 +167,11 @@ def resampled_distances(
             -drawn_weights / drawn_weights.sum(axis=1, keepdims=True),
         ]
     )
+    # The gap behind the last value is the rounding of the sums of weights.
     rising = np.abs(np.cumsum(signed[:, order], axis=1))[:, :-1]
     steps = np.diff(places[order])
     mean = max(abs(float(scale @ measured / scale.sum())), 1e-300)
+    # Between equal values the distribution functions have not both risen yet: no gap there counts.
     return rising @ steps / mean, np.where(steps > 0, rising, 0.0).max(axis=1)
 
 
@@ -178,6 +183,7 @@ def energy_distance(measured: FloatArray, drawn: FloatArray) -> float:
     """
     spread = np.maximum(measured.std(axis=0), 1e-300)
     x, y = _thinned(measured) / spread, _thinned(drawn) / spread
+    # Without the zeros of the diagonal, which would bias the mean.
     within = [cdist(z, z).sum() / (len(z) * (len(z) - 1)) for z in (x, y)]
     return float(2 * cdist(x, y).mean() - within[0] - within[1])
 
@@ -195,6 +201,7 @@ def classifier_accuracy(measured: FloatArray, drawn: FloatArray, rng: np.random.
 
     Raises InputError if there are fewer than ten particles of one kind.
     """
+    # As many of either kind, or guessing the more frequent one would beat chance.
     n = min(len(measured), len(drawn))
     if n < 2 * N_FOLDS:
         raise InputError(f"A classifier needs at least {2 * N_FOLDS} particles of either kind, got {n}.")
@@ -232,8 +239,10 @@ def _features(rows: FloatArray) -> FloatArray:
 def _logistic(features: FloatArray, kinds: FloatArray) -> FloatArray:
     """Slopes of a logistic regression with a ridge, by Newton's method."""
     slopes = np.zeros(features.shape[1])
+    # Kinds that can be told apart without error have no finite slopes.
     ridge = RIDGE * len(features) * np.eye(features.shape[1])
     for _ in range(NEWTON_STEPS):
+        # Beyond 30 the weights of Newton's step underflow and the matrix is the ridge alone.
         chance = 1 / (1 + np.exp(-np.clip(features @ slopes, -30, 30)))
         slope = features.T @ (kinds - chance) - ridge @ slopes
         step = np.linalg.solve((features.T * (chance * (1 - chance))) @ features + ridge, slope)

@@ -188,10 +188,12 @@ def calibrate(
     log_likelihood, misfit, gains = np.zeros(len(points)), np.zeros(len(points)), []
     moments = []
     for k, target in enumerate(targets):
+        # Results are taken as independent given the parameters: their likelihoods multiply.
         models = _fit(target, trials, ranges, runs.results[:, k], runs.errors[:, k])
         means, deviations = _predict(models, places, target)
         spread = np.hypot(deviations, target.error)
         density = norm.logpdf(target.value, means, spread)
+        # Summed over the hyperparameters, not of the likeliest: with few runs several fit as well.
         log_likelihood += logsumexp(density, axis=0, b=models.weights[:, None])
         mean, deviation = _mixture(models.weights, means, deviations)
         misfit += ((mean - target.value) / np.hypot(deviation, target.error)) ** 2
@@ -205,6 +207,7 @@ def calibrate(
         low, high = ends = _interval(column, weights)
         if parameter.choices:
             ends = (parameter.low, parameter.high)
+            # A choice has no order, so that an interval of its numbers would mean nothing.
             low = high = int(np.argmax(np.bincount(column.astype(int), weights)))
         intervals.append(ends)
         inside &= (column >= low) & (column <= high)
@@ -217,6 +220,7 @@ def calibrate(
         best_index=int(np.argmax(np.where(inside, weights, -1.0))),
         misfit=float(np.sqrt(misfit.min())),
         next_values=points[
+            # A run that failed would fail again beside its values, where the gain stays the largest.
             np.argmax(np.where(_near(places / ranges, trials[failed] / ranges), -np.inf, gain))
         ],
     )
@@ -311,11 +315,13 @@ def _variance_reduction(
         chosen = len(models.processes) // 2
     _, covariance = models.processes[chosen].predict(places, return_cov=True)
     variance = np.diag(covariance)
+    # 1e-12: a target without error and a process without variance at a run would divide by 0.
     relative = weights / (variance + (target.error / target.scale) ** 2 + 1e-12)
     return np.asarray(relative @ covariance**2 / (variance + models.noises[chosen] ** 2))
 
 
 def _prior_points(parameters: Sequence[CalibrationParameter]) -> FloatArray:
+    # Half a cell on: the first point of the sequence is the corner of the ranges.
     unit = Sobol(len(parameters), scramble=False).random(N_POINTS) + 0.5 / N_POINTS
     columns = []
     for u, parameter in zip(unit.T, parameters, strict=True):

@@ -83,12 +83,14 @@ def fit_asymmetric(u: FloatArray, z: FloatArray, min_points: int) -> AsymmetricF
     breaks = np.arange(min_points, len(u) - min_points + 1)
     if not len(breaks):
         return None
+    # Running sums give the loss of every break at once: a fit at each would take quadratic time.
     forward, backward = _running_lines(u, z), _running_lines(u[::-1], z[::-1])
     losses = forward.losses[breaks - 1] + backward.losses[len(u) - breaks - 1]
     best = int(breaks[losses.argmin()])
     left, right = forward.line(best - 1), backward.line(len(u) - best - 1)
     if left.slope <= 0.0 or right.slope >= 0.0:
         return None
+    # The slopes differ in sign here, so that the divisor is not 0.
     meeting = (right.intercept - left.intercept) / (left.slope - right.slope)
     return AsymmetricFit(
         left=left,
@@ -106,6 +108,7 @@ def fit_symmetric(u: FloatArray, z: FloatArray, min_points: int) -> SymmetricFit
     """
     if len(u) < 2 * min_points:
         return None
+    # The loss has several minima over the apex on rough surfaces: the best of a grid comes first.
     candidates = np.linspace(u[min_points - 1], u[-min_points], 64)
     losses = [_roof(place, u, z)[0] for place in candidates]
     best = int(np.argmin(losses))
@@ -116,6 +119,7 @@ def fit_symmetric(u: FloatArray, z: FloatArray, min_points: int) -> SymmetricFit
         lambda place: _roof(place, u, z)[0],
         bounds=(candidates[best] - step, candidates[best] + step),
         method="bounded",
+        # Far below the distance of the points, where the loss no longer changes.
         options={"xatol": 1e-6 * float(step)},
     )
     place = float(refined.x)
@@ -139,6 +143,7 @@ class _Running:
 
 def _running_lines(u: FloatArray, z: FloatArray) -> _Running:
     """Least-squares lines through the first 1, 2, ... points, from running sums about the mean."""
+    # Sums of squares of places far from the origin would cancel in the differences below.
     shift_u, shift_z = u.mean(), z.mean()
     x, y = u - shift_u, z - shift_z
     n = np.arange(1, len(u) + 1)
@@ -147,6 +152,7 @@ def _running_lines(u: FloatArray, z: FloatArray) -> _Running:
     sxy = np.cumsum(x * y) - sx * sy / n
     syy = np.cumsum(y * y) - sy**2 / n
     slope = np.divide(sxy, sxx, out=np.zeros_like(sxy), where=sxx > 0.0)
+    # Rounding makes the loss of points on one line slightly negative.
     losses = np.maximum(syy - slope * sxy, 0.0)
     return _Running(losses, slope, sy / n - slope * sx / n + shift_z - slope * shift_u)
 
@@ -201,6 +207,7 @@ def silhouette_deficit(u: FloatArray, fit: AsymmetricFit, mean_diameter: float) 
     ``u``: places, shape (m,). ``fit``: apex and flanks, as first estimated.
     """
     slope = np.where(u < fit.apex[0], fit.left.slope, -fit.right.slope)
+    # The formula diverges on the axis; half a grain is the least distance of a grain beside it.
     away = np.maximum(np.abs(u - fit.apex[0]) / mean_diameter, 0.5)
     number_density = SOLID_FRACTION / (np.pi / 6)
     curvature = 0.5 * (1.0 + slope**2) ** -1.5
@@ -321,6 +328,7 @@ def evaluate_section(
     for _ in range(SELECTIONS):
         if fit is None:
             break
+        # Lines choose points and points give lines; two selections may alternate, hence the limit of rounds.
         chosen = points_between(profile, fit.asymmetric, low, high)
         if np.array_equal(chosen, used):
             break

@@ -66,6 +66,7 @@ def bins_between(lowest: float, highest: float, dtype: np.dtype[Any]) -> FloatAr
     if dtype.kind == "f":
         return np.linspace(lowest, highest if highest > lowest else lowest + 1.0, N_BINS + 1)
     first, last = int(lowest), int(highest)
+    # A whole number of grey values in each bin: bins of 1.5 would hold one and two in turn, as false peaks.
     width = -(-(last - first + 1) // N_BINS)
     n_bins = -(-(last - first + 1) // width)
     return first - 0.5 + width * np.arange(n_bins + 1, dtype=np.float64)
@@ -127,6 +128,7 @@ def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any])
         level = float(
             _multi_otsu(classes=settings.classes, hist=(seen.counts, centres))[settings.boundary - 1]
         )
+    # The upper edge of the bin: a level in its middle would part voxels that the histogram counts together.
     return float(seen.edges[np.searchsorted(seen.edges, level, side="right")])
 
 
@@ -143,8 +145,10 @@ def hidden_class(
     centres, counts = seen.centres, ndimage.gaussian_filter1d(seen.counts.astype(np.float64), _PEAK_WIDTH)
     rest = centres >= level if settings.dark else centres < level
     centres, counts = centres[rest], counts[rest]
+    # From here on grains lie at the end of the row.
     if settings.dark:
         centres, counts = centres[::-1], counts[::-1]
+    # Padded, since a peak at the border of the range counts too.
     peaks, _ = signal.find_peaks(np.concatenate([[0.0], counts, [0.0]]))
     for last in reversed(peaks - 1):
         first = int(counts[: last + 1].argmax())
@@ -184,6 +188,7 @@ def cleaned(mask: NDArray[np.bool_], settings: CleaningSettings) -> NDArray[np.b
     width = settings.margin
     if width == 0:
         return mask
+    # Beyond the border the mask goes on as it is there: zeros would be eroded inwards.
     padded = np.pad(mask, width, mode="edge")
     if settings.closing:
         padded = ndimage.binary_closing(padded, _CROSS, settings.closing)
