@@ -50,7 +50,7 @@ def density_target(density: float, error: float) -> WantedResult:
 
 @dataclass(frozen=True)
 class CalibrationRun:
-    """A run: the name of its folder, the parameters, its ``repose.json``, and that of its drum if it has one."""
+    """A run: its folder, the values of the parameters, its ``repose.json``, and that of its drum, if any."""
 
     folder: str
     values: tuple[float, ...]
