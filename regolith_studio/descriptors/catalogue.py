@@ -58,6 +58,7 @@ class ShapeCache:
     @cached_property
     def box(self) -> OrientedBox:
         """Oriented bounding box by `box_metric`."""
+        _ = self.hull  # held here: a large mesh does not keep it for long, and it would be built again
         return BOX_METRICS[self.box_metric](self._solid)
 
     @cached_property
