@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 
-from regolith_studio.cli.entry import STOPPED, StopSignals, remove_unfinished, run
+from regolith_studio.cli.entry import STOPPED, StopSignals, remove_unfinished, run, say_last
 from regolith_studio.errors import stop_requests
 
 
@@ -24,8 +24,8 @@ def main() -> None:
         elif signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
         code = run(sys.argv[1:])
-    except KeyboardInterrupt:  # while modules were loaded
-        print(STOPPED, file=sys.stderr)  # noqa: T201
+    except KeyboardInterrupt:  # while modules were loaded, or a signal was repeated
+        say_last(STOPPED)
         code = 130
     signals.ended = True
     if stop_requests:

@@ -20,6 +20,8 @@ STOP_SECONDS = 1.5
 Its processes end with it: each waits in a thread for the end of its parent.
 """
 STOPPED = "Stopped."
+_saying, _said = threading.Lock(), threading.Event()
+"""Of the last sentence, which the command prints, or the thread that ends it: one of them, and once."""
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
@@ -70,7 +72,8 @@ class StopSignals:
             pass
         time.sleep(STOP_SECONDS)
         remove_unfinished()
-        if not self.ended:
+        _saying.acquire(timeout=STOP_SECONDS)  # never released: nothing is printed after this
+        if not (self.ended or _said.is_set()):
             os.write(2, f"{STOPPED}\n".encode())
         if "multiprocessing" in sys.modules:
             for child in sys.modules["multiprocessing"].active_children():
@@ -94,6 +97,7 @@ def run(arguments: Sequence[str]) -> int:
     """
     from regolith_studio.cli.commands import app
 
+    _said.clear()
     for stream in (sys.stdout, sys.stderr):  # names of files may hold what the terminal cannot show
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -127,5 +131,13 @@ def _report(sentence: str, code: int) -> int:
         sentence, code = STOPPED, INTERRUPTED
     if os.environ.get("REGOLITH_STUDIO_DEBUG"):
         traceback.print_exc()
-    print(printable(sentence), file=sys.stderr)  # noqa: T201  the only output of a failed command
+    say_last(printable(sentence))
     return code
+
+
+def say_last(sentence: str) -> None:
+    """Print why a command ended, unless that was said."""
+    with _saying:
+        if not _said.is_set():
+            print(sentence, file=sys.stderr)  # noqa: T201  the only output of a failed command
+        _said.set()
