@@ -10,14 +10,15 @@ grain in 90 % of cases, if errors are normal (Student's t).
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.stats import t
 
-from benchmarks.grain_surfaces import polyhedron
 from benchmarks.result_files import Rows, add_result
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import RegolithError
@@ -29,7 +30,7 @@ from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.surface_refinement import coverage
 from regolith_studio.imaging.volume import Volume
-from tools.make_samples.grains import random_rotation
+from tools.make_samples.grains import even_sphere, random_rotation
 from tools.make_samples.random_fields import SphereField, power_law
 
 KEYS = (
@@ -49,22 +50,31 @@ Random = np.random.Generator
 Cells = dict[tuple[str, int, float, str], list[list[float]]]
 
 
-def _ball(_rng: Random) -> Mesh:
+def polyhedron(n_faces: int, rng: np.random.Generator) -> Mesh:
+    """The intersection of half-spaces with about evenly spread normals."""
+    normals = even_sphere(n_faces).vertices + 0.3 * rng.standard_normal((n_faces, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    offsets = rng.uniform(0.85, 1.15, n_faces)
+    corners = HalfspaceIntersection(np.column_stack([normals, -offsets]), np.zeros(3)).intersections
+    return Mesh(corners[ConvexHull(corners).vertices], np.empty((0, 3), dtype=np.int64)).hull
+
+
+def ball(_rng: Random) -> Mesh:
     return Mesh(icosphere(4).vertices, icosphere(4).faces)
 
 
-def _rough(axes: tuple[float, float, float], rng: Random) -> Mesh:
+def rough(axes: tuple[float, float, float], rng: Random) -> Mesh:
     sphere = icosphere(4)
     field = SphereField(power_law(2, 20, 0.06, 1.4), rng)
     return Mesh(sphere.vertices * axes * np.exp(field(sphere.vertices))[:, None], sphere.faces)
 
 
 SHAPES: dict[str, tuple[Callable[[Random], Mesh], ...]] = {
-    "round": (_ball, lambda rng: _rough((1.0, 1.0, 1.0), rng)),
+    "round": (ball, lambda rng: rough((1.0, 1.0, 1.0), rng)),
     "other": (
         lambda rng: polyhedron(14, rng),
         lambda rng: polyhedron(8, rng),
-        lambda rng: _rough((1.5, 1.1, 0.6), rng),
+        lambda rng: rough((1.5, 1.1, 0.6), rng),
     ),
 }
 
@@ -73,28 +83,48 @@ def _is_grey(surface: str, _across: float, _noise: float) -> bool:
     return surface == "grey"
 
 
-def errors(truth: Mesh, across: float, noise: float, blur: float, rng: Random) -> dict[str, list[float]]:
-    """Relative errors of both surfaces in percent; empty where no grain is found."""
+def placed(truth: Mesh, across: float, rng: Random) -> tuple[Mesh, int]:
+    """The shape turned at random, as large as a ball of so many voxels, and the edge of its volume."""
     scale = across / 2 / (3 * truth.volume / (4 * np.pi)) ** (1 / 3)
     turned = truth.moved(shift=-truth.centroid, rotation=random_rotation(rng), scale=scale)
     edge = int(np.ceil(np.ptp(turned.vertices, axis=0).max())) + 2 * MARGIN
-    known = describe(turned, KEYS)
-    share = coverage(turned.moved(shift=edge // 2 + rng.uniform(-0.5, 0.5, 3)), (edge,) * 3, 6)
+    return turned.moved(shift=edge // 2 + rng.uniform(-0.5, 0.5, 3)), edge
+
+
+def scanned(
+    share: NDArray[np.float32], noise: float, blur: float, rng: Random, most: float = np.inf
+) -> Volume:
+    """A scan of these shares of each voxel, 16 bits; brighter than `most` is clipped."""
     seen = ndimage.gaussian_filter(share, blur) + noise * rng.standard_normal(share.shape)
-    grey = Volume(np.round(8000 + 6000 * seen).astype(np.uint16), np.ones(3), "grey", "grain")
+    return Volume(
+        np.round(8000 + 6000 * np.minimum(seen, most)).astype(np.uint16), np.ones(3), "grey", "grain"
+    )
+
+
+def errors(truth: Mesh, across: float, noise: float, blur: float, rng: Random) -> dict[str, list[float]]:
+    """Relative errors of both surfaces in percent; empty where no grain is found."""
+    body, edge = placed(truth, across, rng)
+    known = describe(body, KEYS)
+    grey = scanned(coverage(body, (edge,) * 3, 6), noise, blur, rng)
     found = {}
     try:
         labels = segment(grey).labels
         for name in ("grey", "mask"):
             grain_surface.follows_grey = partial(_is_grey, name)  # type: ignore[attr-defined]
             made = extract_particles(labels, ExtractionSettings(min_voxels=30), grey=grey).particles
-            largest = max(made, key=lambda each: each.mesh.volume)
-            described = describe(largest.mesh, KEYS)
-            found[name] = [100 * (described[key] / known[key] - 1) for key in KEYS]
+            found[name] = relative_errors(
+                max((each.mesh for each in made), key=lambda mesh: mesh.volume), known
+            )
     except (RegolithError, ValueError) as error:
         print(across, noise, error, file=sys.stderr)
         return {}
     return found
+
+
+def relative_errors(mesh: Mesh, known: Mapping[str, float]) -> list[float]:
+    """Of each descriptor in percent."""
+    described = describe(mesh, KEYS)
+    return [100 * (described[key] / known[key] - 1) for key in KEYS]
 
 
 def errors_at(seed: int, across: int) -> Cells:

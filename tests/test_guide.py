@@ -37,6 +37,7 @@ def block(text: str) -> str:
         ("{rows>10>1:.2f}", "0.25"),
         ("{rows>10>:1:.2f}", "0.10"),
         ("{rows>10:range .1f}", "0.1 to 0.2"),
+        ("| rows | V |\n| * | {rows>*:pairs .1f} |", "| rows | V |\n| 10 | 0.1 ± 0.2 |"),
         ("{heaps>engine=a;seed=2>angle:.0f}", "34"),
         ("{heaps>engine=a>angle:mean .0f}", "32 ± 25"),
         ("{heaps>engine=b>angle:.0f}", "20"),
