@@ -342,7 +342,8 @@ def run_document(
     - ``packing``: of the heap.
     - ``problem``: the message of a failed run.
     """
-    case = prepared.case
+    case, notes = prepared.case, [*ending.notes, *engine_notes(engine)] if ending else []
+    sentences = (*notes, *_sentences(ending, measured))
     return {
         "format": FORMAT,
         "schema_version": SCHEMA_VERSION,
@@ -374,14 +375,14 @@ def run_document(
             "steps": ending.steps if ending else None,
             "simulated_time": ending.simulated_time if ending else None,
             "n_snapshots": n_snapshots,
-            "notes": [*ending.notes, *engine_notes(engine)] if ending else [],
+            "notes": notes,
         },
         "checks": _checks(ending.checks) if ending else None,
         "packing": packing_document(
             case.contact.density, ending.checks.solid_fraction if ending else None, packing
         ),
         "measurement": _measurement(measured),
-        "messages": [to_json(each) for each in _sentences(ending, measured) if isinstance(each, Message)],
+        "messages": [to_json(each) for each in sentences if isinstance(each, Message)],
     }
 
 

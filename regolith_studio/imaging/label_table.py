@@ -95,6 +95,14 @@ def label_table(source: Volume, run: ParallelMap = map) -> LabelTable:
     return LabelTable(present, counts[present], low[present], high[present])
 
 
+def voxel_inside(labels: NDArray[Any], label: int, box: Box) -> tuple[int, int, int]:
+    """The voxel of a label in its box that is nearest to its centre."""
+    places = np.argwhere(np.asarray(labels[box]) == label)
+    nearest = places[np.linalg.norm(places - places.mean(axis=0), axis=1).argmin()]
+    x, y, z = (int(at) + side.start for at, side in zip(nearest, box, strict=True))
+    return x, y, z
+
+
 def find_padding(source: Volume, run: ParallelMap = map) -> tuple[set[int], BoolArray]:
     """Labels that touch voxels of a label below 0, and columns of voxels along z most of which have one.
 

@@ -20,6 +20,7 @@ from regolith_studio.imaging.segmentation.object_classifier import (
     ObjectTraining,
     classify_objects,
     describe_objects,
+    suspect_objects,
     train_on_examples,
 )
 from regolith_studio.imaging.segmentation.pixel_classifier import (
@@ -325,6 +326,12 @@ def describe_grains(grey: Volume, segmentation: Segmentation) -> Steps:
             yield Progress(*next(steps))
         except StopIteration as end:
             return end.value
+
+
+def find_suspects(grey: Volume, found: Segmentation) -> Steps:
+    """Measure all grains; returns those unlike the others, ``SuspectObject`` each."""
+    table: ObjectTable = yield from describe_grains(grey, found)
+    return suspect_objects(table)
 
 
 def classify_grains(

@@ -1,6 +1,7 @@
 """Jobs for the angle of repose (2.6, 3.3): simulate the lifting cylinder, measure the pile."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from regolith_studio.dem.run_io import (
     save_shapes,
     snapshot_files,
     staged_run,
+    with_filling,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
 from regolith_studio.dem.verification.certificate import MEASUREMENTS, QUICK, measure_lines, verifiable_engine
@@ -54,6 +56,8 @@ class ReposeRequest:
         Whether an earlier run in the folder may be replaced.
     threads
         Of an engine that uses several; they change no result.
+    filling
+        Folder of a run of the same particles, whose filled cylinder is lifted again; ``None`` to fill it.
 
     Raises
     ------
@@ -67,6 +71,7 @@ class ReposeRequest:
     evaluation: EvaluationSettings = field(default_factory=EvaluationSettings)
     overwrite: bool = False
     threads: int = 1
+    filling: Path | None = None
 
     def __post_init__(self) -> None:
         if self.case.drum is None:
@@ -97,8 +102,16 @@ def repose_steps(dataset_folder: Path, folder: Path, request: ReposeRequest) -> 
     is stopped or fails, and ``repose.json`` says so; but it replaces no finished run. A run that was killed
     or stopped goes on from the last state of its engine when the same is asked for again.
     """
-    prepared = prepare(read_dataset(dataset_folder), request.case, dataset_hash(dataset_folder))
+    prepared, _ = _prepared(dataset_folder, request.case, request.filling)
     return (yield from simulate_prepared(prepared, folder, request))
+
+
+def _prepared(
+    dataset_folder: Path, case: ReposeCase, filling: Path | None
+) -> tuple[PreparedCase, Sequence[str]]:
+    """The drawn particles, in the filling of an earlier run if one is named, and notes on that."""
+    prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
+    return (prepared, ()) if filling is None else with_filling(prepared, filling)
 
 
 def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeRequest) -> Steps:
@@ -226,15 +239,17 @@ def measure_result(
         return refusal
 
 
-def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:
-    """The particles of a case before they fall; returns (:class:`PreparedCase`, :class:`ParticleState`).
+def preview_repose(dataset_folder: Path, case: ReposeCase, filling: Path | None = None) -> Steps:
+    """The particles of a case before they fall, or in the filling of an earlier run.
 
-    The state is empty where there are more than `MAX_PREVIEWED`.
+    Returns (:class:`PreparedCase`, :class:`ParticleState`, notes on the filling). The state is empty where
+    there are more than `MAX_PREVIEWED`.
     """
     yield Started(N_("Drawing particles"))
-    prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
+    prepared, notes = _prepared(dataset_folder, case, filling)
     yield Progress(1, 2)
-    return prepared, loose_column(prepared) if len(prepared) <= MAX_PREVIEWED else no_particles()
+    shown = prepared.filling if prepared.filling is not None else loose_column(prepared)
+    return prepared, shown if len(prepared) <= MAX_PREVIEWED else no_particles(), notes
 
 
 def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.imaging.label_surface import label_surface
+from regolith_studio.imaging.label_table import label_table
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
 from regolith_studio.imaging.segmentation.scan_outside import (
     AUTO,
@@ -218,9 +219,10 @@ def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
 
 
 def view_labels(labels: Volume) -> Steps:
-    """Coarse surfaces of all labels for a picture; returns a ``LabelSurface``."""
+    """Coarse surfaces of all labels for a picture, a ``LabelSurface``, and the voxels of each label."""
     yield Started(N_("Drawing grains"))
-    return label_surface(labels.array, labels.voxel_size)
+    surface = label_surface(labels.array, labels.voxel_size)
+    return surface, label_table(labels).sizes() if len(surface.labels) else {}
 
 
 def scratch_folder() -> Path:

@@ -5,8 +5,10 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.distributions import distribution, zingg_class
+from regolith_studio.descriptors.distributions import Distribution, distribution, zingg_class
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_hint
 from regolith_studio.imaging.grain_errors import stated_intervals
@@ -107,6 +109,19 @@ def statistics_table(
     return Table(title, columns, rows)
 
 
+def statistics_distribution(
+    entries: Sequence[ParticleEntry], key: str, weighting: str = "number", border_weights: bool = True
+) -> Distribution | None:
+    """What :func:`statistics_table` tells of all particles; ``None`` where none has a value."""
+    known = [each for each in entries if np.isfinite(_value(each, key))]
+    return _distribution(known, key, weighting, border_weights) if known else None
+
+
+def _value(entry: ParticleEntry, key: str) -> float:
+    """Of a descriptor; NaN until it is measured."""
+    return entry.descriptors[key] if entry.descriptors and key in entry.descriptors else np.nan
+
+
 def statistics_of_keys(
     entries: Sequence[ParticleEntry],
     keys: Sequence[str],
@@ -182,10 +197,16 @@ def _key_of(name: str) -> str:
     raise InputError(f"There is no descriptor called {name!r}; there are {symbols}.")
 
 
+def _distribution(
+    members: Sequence[ParticleEntry], key: str, weighting: str, border_weights: bool
+) -> Distribution:
+    weights = [entry.particle.weight for entry in members] if border_weights else None
+    return distribution([entry.descriptors or {} for entry in members], key, weighting, weights)
+
+
 def _statistics(
     name: str, members: Sequence[ParticleEntry], key: str, weighting: str, border_weights: bool
 ) -> tuple[str | int | float, ...]:
-    weights = [entry.particle.weight for entry in members] if border_weights else None
-    spread = distribution([entry.descriptors or {} for entry in members], key, weighting, weights)
+    spread = _distribution(members, key, weighting, border_weights)
     quantiles = (float(value) for value in spread.quantile(QUANTILES))
     return (name, len(members), spread.mean, spread.standard_deviation, *quantiles)

@@ -242,8 +242,17 @@ class Session:
             self.update(kind.value, **{kind.value: value})
             self._mark_outdated()
 
-        reactions = Reactions(show, partial=show, failed=self.failure_reporter(job.title))
-        return self._board.start(kind, job.title, job.job, reactions)
+        def fail(failure: Failed) -> None:
+            self.update(kind.value, failures={**self.results.failures, kind.value: failure.sentence})
+            self.failure_reporter(job.title)(failure)
+
+        left = {each: why for each, why in self.results.failures.items() if each != kind.value}
+        self.update(kind.value, failures=left)
+        return self._board.start(kind, job.title, job.job, Reactions(show, partial=show, failed=fail))
+
+    def choices_of(self, kind: Kind) -> Choices | None:
+        """Those that a study was computed with; ``None`` if there is none."""
+        return self._studied.get(kind)
 
     def run(
         self,

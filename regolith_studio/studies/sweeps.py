@@ -72,6 +72,13 @@ def descriptor_error(rmsre: FloatArray) -> FloatArray:
     return np.asarray(rmsre[..., :-1].mean(axis=-1))
 
 
+def best_row(study: CoarseningStudy) -> int:
+    """The row of the smallest :func:`descriptor_error`; of ties (:data:`EXACT`), that of the best overlap."""
+    error = descriptor_error(study.rmsre)
+    ties = np.flatnonzero(error <= error.min() + EXACT)
+    return int(ties[study.rmsre[ties, -1].argmin()])
+
+
 def pareto_front(study: CoarseningStudy) -> tuple[int, ...]:
     """Rows that no other row beats in both overlap and :func:`descriptor_error`, by their overlap."""
     distance, error = study.rmsre[:, -1], descriptor_error(study.rmsre)

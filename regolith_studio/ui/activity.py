@@ -28,14 +28,13 @@ from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import number_text, tr, translate
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label
+from regolith_studio.ui.widgets.result_view import TaskClock, progress_text
 from regolith_studio.ui.widgets.toast import Toast
 
 SHOW_DELAY = 250
 """Milliseconds after which a running task is shown."""
-MANY = 500
-"""Steps of a task from which on its progress is shown in per cent."""
 IDLE = N_("Ready")
 
 
@@ -110,7 +109,7 @@ class TasksPanel(QWidget):
         first, others = _oldest(seen), len(seen) - 1
         self.bar.setRange(0, first.total)
         self.bar.setValue(first.done)
-        count = f" ({_progress(first)})" if first.total else ""
+        count = f" ({progress_text(first)})" if first.total else ""
         message = f": {translate(first.message)}" if first.message else ""
         more = "   " + tr("and {count} more", count=others) if others else ""
         held = " – " + tr("paused") if first.paused else ""
@@ -126,45 +125,11 @@ def _oldest(tasks: Sequence[Task]) -> Task:
     return next((task for task in tasks if not task.stopping), tasks[0])
 
 
-def _progress(task: Task) -> str:
-    """How much is done: in steps, or in per cent where these are many."""
-    if task.total >= MANY:
-        return number_text(task.done / task.total, ".0%")
-    return tr("{at} of {total}", at=task.done, total=task.total)
-
-
-def time_left(done: int, total: int, seconds: float) -> str:
-    """Estimated remaining time as text; empty while it is unknown."""
-    if not 0 < done < total or seconds < 1.0:
-        return ""
-    rest = seconds * (total - done) / done
-    if rest < 60:
-        return tr("about {seconds} s left", seconds=max(1, round(rest)))
-    if rest < 5400:
-        return tr("about {minutes} min left", minutes=round(rest / 60))
-    return tr("about {hours:.1f} h left", hours=rest / 3600)
-
-
-class _Clock:
-    """Seconds that a task has been running, without its pauses."""
-
-    def __init__(self) -> None:
-        self._worked, self._since = 0.0, time.monotonic()
-        self._running = True
-
-    def seconds(self) -> float:
-        return self._worked + (time.monotonic() - self._since if self._running else 0.0)
-
-    def run(self, running: bool) -> None:
-        """Start or pause."""
-        self._worked, self._since, self._running = self.seconds(), time.monotonic(), running
-
-
 class _Row:
     """The widgets of one task."""
 
     def __init__(self, number: int) -> None:
-        self.clock = _Clock()
+        self.clock = TaskClock()
         self.title, self.bar, self.left = QLabel(), QProgressBar(), hint_label()
         self.bar.setAccessibleName(tr("Progress"))
         self.bar.setFixedHeight(14)
@@ -176,13 +141,11 @@ class _Row:
         self.widgets = (self.title, self.bar, self.left, self.pause, self.stop)
 
     def show(self, task: Task) -> None:
-        self.clock.run(not task.paused)
         parts = filter(None, (task.title, task.message))
         self.title.setText(": ".join(map(translate, parts)))
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
-        rest = time_left(task.done, task.total, self.clock.seconds())
-        self.left.setText(tr("Stopping …") if task.stopping else tr("paused") if task.paused else rest)
+        self.left.setText(self.clock.show(task))
         self.pause.setVisible(task.pausable)
         self.pause.setChecked(task.paused)
         self.pause.setText(tr("Resume") if task.paused else tr("Pause"))

@@ -58,6 +58,16 @@ def control_row(*parts: QWidget, margins: tuple[int, int, int, int] = (0, 0, 0, 
     return made
 
 
+def left_aligned(part: QWidget) -> QWidget:
+    """A part at the left of what room there is, as wide as it needs."""
+    made = QWidget()
+    row = QHBoxLayout(made)
+    row.setContentsMargins(0, 0, 0, 0)
+    row.addWidget(part)
+    row.addStretch(1)
+    return made
+
+
 CONTROLS_WIDTH = 290
 STANDARD_SIZES = "standard_sizes"
 """Property of a splitter: the sizes of its parts in a new window."""

@@ -380,10 +380,6 @@
         <translation>&lt;b&gt;Formen werden verändert:&lt;/b&gt; {how}</translation>
     </message>
     <message>
-        <source>&lt;b&gt;{count} facets&lt;/b&gt; are sufficient: with more, no error falls by more than {gain:.1%}.</source>
-        <translation>&lt;b&gt;{count} Facetten&lt;/b&gt; genügen: mit mehr sinkt kein Fehler um mehr als {gain:.1%}.</translation>
-    </message>
-    <message>
         <source>&lt;b&gt;{label}&lt;/b&gt; does not contain: {lost}.</source>
         <translation>&lt;b&gt;{label}&lt;/b&gt; enthält nicht: {lost}.</translation>
     </message>
@@ -414,10 +410,6 @@
     <message>
         <source>A click on an object makes it an example of a class; all others are classified.</source>
         <translation>Ein Klick auf ein Objekt macht es zum Beispiel einer Klasse; alle anderen werden klassifiziert.</translation>
-    </message>
-    <message>
-        <source>A click shows the slices through a voxel.</source>
-        <translation>Ein Klick zeigt die Schnitte durch ein Voxel.</translation>
     </message>
     <message>
         <source>A closed mesh without faults.</source>
@@ -590,6 +582,10 @@
     <message>
         <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</source>
         <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</translation>
+    </message>
+    <message>
+        <source>An earlier run of the same particles in the same cylinder, whose filling is lifted again</source>
+        <translation>Ein früherer Lauf derselben Partikel im selben Zylinder, dessen Füllung noch einmal angehoben wird</translation>
     </message>
     <message>
         <source>An encrypted cluster needs a folder with {names}.</source>
@@ -964,6 +960,10 @@
         <translation>Wählen Sie Beispiele von mindestens zwei Klassen: Klicken Sie in einige Objekte jeder Klasse.</translation>
     </message>
     <message>
+        <source>Choose it to see it in the slices.</source>
+        <translation>Wählen Sie es aus, um es in den Schnitten zu sehen.</translation>
+    </message>
+    <message>
         <source>Choose it to see the run.</source>
         <translation>Wählen Sie die Zeile, um den Lauf zu sehen.</translation>
     </message>
@@ -1042,6 +1042,10 @@
     <message>
         <source>Click into a slice to move the frame.</source>
         <translation>Ein Klick in ein Schichtbild verschiebt den Rahmen.</translation>
+    </message>
+    <message>
+        <source>Click to move the slices.</source>
+        <translation>Ein Klick bewegt die Schnitte.</translation>
     </message>
     <message>
         <source>Click two grains that are one.</source>
@@ -1189,7 +1193,7 @@
     </message>
     <message>
         <source>Comparing</source>
-        <translation type="unfinished"></translation>
+        <translation>Vergleichen</translation>
     </message>
     <message>
         <source>Comparing distributions</source>
@@ -1230,14 +1234,6 @@
     <message>
         <source>Compute a study first.</source>
         <translation>Berechnen Sie zuerst eine Studie.</translation>
-    </message>
-    <message>
-        <source>Compute for all {count} particles</source>
-        <translation>Für alle {count} Partikel berechnen</translation>
-    </message>
-    <message>
-        <source>Compute for this particle</source>
-        <translation>Für dieses Partikel berechnen</translation>
     </message>
     <message>
         <source>Concave flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.</source>
@@ -1448,6 +1444,10 @@
         <translation>Standardtasten</translation>
     </message>
     <message>
+        <source>Degree (Fig. 3)</source>
+        <translation>Grad (Bild 3)</translation>
+    </message>
+    <message>
         <source>Degree at which fits are cut and models draw; the paper uses 10.</source>
         <translation>Grad, bei dem Anpassungen abgeschnitten werden und Modelle ziehen; im Artikel 10.</translation>
     </message>
@@ -1584,6 +1584,10 @@
         <translation>Abstände der Ziehungen</translation>
     </message>
     <message>
+        <source>Distribution</source>
+        <translation>Verteilung</translation>
+    </message>
+    <message>
         <source>Distributions</source>
         <translation>Verteilungen</translation>
     </message>
@@ -1642,14 +1646,6 @@
     <message>
         <source>Draw particles: their distributions appear here, over those of the measured ones.</source>
         <translation>Ziehen Sie Partikel: ihre Verteilungen erscheinen hier, über denen der gemessenen.</translation>
-    </message>
-    <message>
-        <source>Draw the polyhedra of this particle</source>
-        <translation>Die Polyeder dieses Partikels zeichnen</translation>
-    </message>
-    <message>
-        <source>Draw the polyhedra of {count} particles</source>
-        <translation>Die Polyeder von {count} Partikeln zeichnen</translation>
     </message>
     <message>
         <source>Draw the region</source>
@@ -1828,16 +1824,8 @@
         <translation>Fehler [%]</translation>
     </message>
     <message>
-        <source>Error against l&lt;sub&gt;max&lt;/sub&gt; (Fig. 3)</source>
-        <translation>Fehler gegen l&lt;sub&gt;max&lt;/sub&gt; (Bild 3)</translation>
-    </message>
-    <message>
         <source>Error against the number of facets</source>
         <translation>Fehler gegen die Anzahl der Facetten</translation>
-    </message>
-    <message>
-        <source>Error of coarsened particles</source>
-        <translation>Fehler vergröberter Partikel</translation>
     </message>
     <message>
         <source>Error of the spheres</source>
@@ -2126,6 +2114,10 @@
     <message>
         <source>Filter: words and comparisons, such as  flat S&lt;0.8 AR&gt;1.5</source>
         <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0,8 AR&gt;1,5</translation>
+    </message>
+    <message>
+        <source>Find again</source>
+        <translation>Erneut suchen</translation>
     </message>
     <message>
         <source>Find all grains</source>
@@ -2436,6 +2428,10 @@
         <translation>Körner mit weniger Voxeln entfallen; unter 12 Voxeln Durchmesser sind Formen grob.</translation>
     </message>
     <message>
+        <source>Grains whose solidity (volume over that of the convex hull) is low or whose size is unusual</source>
+        <translation>Körner, deren Solidität (Volumen durch das der konvexen Hülle) klein oder deren Größe ungewöhnlich ist</translation>
+    </message>
+    <message>
         <source>Gravity</source>
         <translation>Schwerkraft</translation>
     </message>
@@ -2676,6 +2672,10 @@
         <translation>Iterationen k_max</translation>
     </message>
     <message>
+        <source>Its Jaccard distance</source>
+        <translation>Deren Jaccard-Distanz</translation>
+    </message>
+    <message>
         <source>Its faces are not oriented consistently.</source>
         <translation>Seine Flächen sind nicht einheitlich orientiert.</translation>
     </message>
@@ -2826,6 +2826,10 @@
     <message>
         <source>Largest Feret diameter</source>
         <translation>Größter Feret-Durchmesser</translation>
+    </message>
+    <message>
+        <source>Largest change [pp]</source>
+        <translation>Größte Änderung [Prozentpunkte]</translation>
     </message>
     <message>
         <source>Largest equivalent radius</source>
@@ -2988,16 +2992,16 @@
         <translation>Verlustfunktionen, die die Zeilen der Studien bilden</translation>
     </message>
     <message>
-        <source>Losses</source>
-        <translation>Verluste</translation>
-    </message>
-    <message>
-        <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
-        <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
+        <source>Losses (Fig. 8)</source>
+        <translation>Verlustfunktionen (Bild 8)</translation>
     </message>
     <message>
         <source>Losses of the studies</source>
         <translation>Verlustfunktionen der Studien</translation>
+    </message>
+    <message>
+        <source>Losses on the Pareto front</source>
+        <translation>Auf der Pareto-Front</translation>
     </message>
     <message>
         <source>Lower cut</source>
@@ -3096,6 +3100,10 @@
         <translation>Höchstzahl der Ecken</translation>
     </message>
     <message>
+        <source>Mean</source>
+        <translation>Mittel</translation>
+    </message>
+    <message>
         <source>Mean Jaccard distance [%]</source>
         <translation>Mittlere Jaccard-Distanz [%]</translation>
     </message>
@@ -3178,6 +3186,10 @@
     <message>
         <source>Measuring …</source>
         <translation>Wird vermessen …</translation>
+    </message>
+    <message>
+        <source>Median</source>
+        <translation>Median</translation>
     </message>
     <message>
         <source>Median distance to the nearest measured particle, over that between measured ones: 0 is a copy</source>
@@ -3381,7 +3393,7 @@
     </message>
     <message>
         <source>Nearness of each material, and of the best mixture, to the target</source>
-        <translation type="unfinished"></translation>
+        <translation>Nähe jedes Materials und der besten Mischung zum Ziel</translation>
     </message>
     <message>
         <source>Negative where the mesh is inside out</source>
@@ -4128,12 +4140,16 @@
         <translation>Querkontraktionszahl</translation>
     </message>
     <message>
-        <source>Polyhedra (STL)</source>
-        <translation>Polyeder (STL)</translation>
+        <source>Polyhedra</source>
+        <translation>Polyeder</translation>
     </message>
     <message>
-        <source>Polyhedra by loss function (Fig. 7)</source>
-        <translation>Polyeder nach Verlustfunktion (Bild 7)</translation>
+        <source>Polyhedra (Fig. 7)</source>
+        <translation>Polyeder (Bild 7)</translation>
+    </message>
+    <message>
+        <source>Polyhedra (STL)</source>
+        <translation>Polyeder (STL)</translation>
     </message>
     <message>
         <source>Polyhedra by loss function and particle</source>
@@ -4252,10 +4268,6 @@
         <translation>Verlauf der Vergröberung</translation>
     </message>
     <message>
-        <source>Progress of the study</source>
-        <translation>Fortschritt der Studie</translation>
-    </message>
-    <message>
         <source>Progressive convex hull</source>
         <translation>Schrittweise vereinfachte Hülle</translation>
     </message>
@@ -4292,16 +4304,8 @@
         <translation>Quantile</translation>
     </message>
     <message>
-        <source>RMSRE [%], 1 particle</source>
-        <translation>RMSRE [%], 1 Partikel</translation>
-    </message>
-    <message>
         <source>RMSRE [%], at least {least:g}</source>
         <translation>RMSRE [%], mindestens {least:g}</translation>
-    </message>
-    <message>
-        <source>RMSRE [%], {count} particles</source>
-        <translation>RMSRE [%], {count} Partikel</translation>
     </message>
     <message>
         <source>RMSRE against l_max</source>
@@ -4310,6 +4314,10 @@
     <message>
         <source>RMSRE against loss weights</source>
         <translation>RMSRE gegen die Gewichte des Verlusts</translation>
+    </message>
+    <message>
+        <source>RMSRE of the best row</source>
+        <translation>RMSRE der besten Zeile</translation>
     </message>
     <message>
         <source>Radius</source>
@@ -4422,6 +4430,10 @@
     <message>
         <source>Recombined surfaces</source>
         <translation>Neu kombinierte Oberflächen</translation>
+    </message>
+    <message>
+        <source>Recompute</source>
+        <translation>Neu berechnen</translation>
     </message>
     <message>
         <source>Recover</source>
@@ -4980,6 +4992,10 @@
         <translation>Scan</translation>
     </message>
     <message>
+        <source>Scatter plot</source>
+        <translation>Streudiagramm</translation>
+    </message>
+    <message>
         <source>Scheduler</source>
         <translation>Scheduler</translation>
     </message>
@@ -5046,10 +5062,6 @@
     <message>
         <source>Segment the whole volume</source>
         <translation>Das ganze Volumen segmentieren</translation>
-    </message>
-    <message>
-        <source>Segment the whole volume with these settings</source>
-        <translation>Das ganze Volumen mit diesen Einstellungen segmentieren</translation>
     </message>
     <message>
         <source>Segmentation</source>
@@ -5148,8 +5160,16 @@
         <translation>Formen werden verändert: {how}</translation>
     </message>
     <message>
+        <source>Share [%]</source>
+        <translation>Anteil [%]</translation>
+    </message>
+    <message>
         <source>Share at or below [%]</source>
         <translation>Anteil bis hierher [%]</translation>
+    </message>
+    <message>
+        <source>Share of the volume</source>
+        <translation>Volumenanteil</translation>
     </message>
     <message>
         <source>Share of the volume in bodies that were left out</source>
@@ -5220,6 +5240,10 @@
         <translation>Einzelne Durchmesser, für alle gleich</translation>
     </message>
     <message>
+        <source>Six particles from the selected one on, and below them their polyhedra, one row per loss function.</source>
+        <translation>Sechs Partikel ab dem gewählten, darunter ihre Polyeder, eine Zeile je Verlustfunktion.</translation>
+    </message>
+    <message>
         <source>Size</source>
         <translation>Größe</translation>
     </message>
@@ -5268,6 +5292,10 @@
         <translation>Kleinster Äquivalentradius</translation>
     </message>
     <message>
+        <source>Smallest l&lt;sub&gt;max&lt;/sub&gt;</source>
+        <translation>Kleinstes l&lt;sub&gt;max&lt;/sub&gt;</translation>
+    </message>
+    <message>
         <source>Smallest l&lt;sub&gt;max&lt;/sub&gt; with every error below</source>
         <translation>Kleinstes l&lt;sub&gt;max&lt;/sub&gt; mit allen Fehlern unter</translation>
     </message>
@@ -5290,6 +5318,10 @@
     <message>
         <source>Solid</source>
         <translation>Körper</translation>
+    </message>
+    <message>
+        <source>Solidity</source>
+        <translation>Solidität</translation>
     </message>
     <message>
         <source>Sorted by distance to the sample</source>
@@ -5456,10 +5488,6 @@
         <translation>Statistik</translation>
     </message>
     <message>
-        <source>Statistics of</source>
-        <translation>Statistik:</translation>
-    </message>
-    <message>
         <source>Statistics of groups</source>
         <translation>Statistik der Gruppen</translation>
     </message>
@@ -5576,6 +5604,10 @@
         <translation>Teilschritte</translation>
     </message>
     <message>
+        <source>Sufficient facets</source>
+        <translation>Ausreichende Facetten</translation>
+    </message>
+    <message>
         <source>Surface</source>
         <translation>Oberfläche</translation>
     </message>
@@ -5594,6 +5626,10 @@
     <message>
         <source>Surfaces tried</source>
         <translation>Versuchte Oberflächen</translation>
+    </message>
+    <message>
+        <source>Suspect grains</source>
+        <translation>Auffällige Körner</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,230 particles of the published micro-CT set cement133, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
@@ -5654,6 +5690,10 @@
     <message>
         <source>Tables 1 and 2: parameters of the heap</source>
         <translation>Tab. 1 und 2: Parameter der Schüttung</translation>
+    </message>
+    <message>
+        <source>Tables and figures are in {folder}.</source>
+        <translation>Tabellen und Bilder sind in {folder}.</translation>
     </message>
     <message>
         <source>Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)</source>
@@ -5760,6 +5800,10 @@
         <translation>Polyeder des Datensatzes</translation>
     </message>
     <message>
+        <source>The distribution appears when particles are measured.</source>
+        <translation>Die Verteilung erscheint, sobald Partikel gemessen sind.</translation>
+    </message>
+    <message>
         <source>The draws are off: {descriptor} by {ratio} times the sampling noise. {remedy}</source>
         <translation>Die Ziehungen weichen ab: {descriptor} um das {ratio}-Fache des Stichprobenrauschens. {remedy}</translation>
     </message>
@@ -5770,10 +5814,6 @@
     <message>
         <source>The errors appear when the fit is measured.</source>
         <translation>Die Fehler erscheinen, sobald der Fit vermessen ist.</translation>
-    </message>
-    <message>
-        <source>The errors still fall at &lt;b&gt;{count} facets&lt;/b&gt;, the largest number here.</source>
-        <translation>Die Fehler sinken noch bei &lt;b&gt;{count} Facetten&lt;/b&gt;, der größten Zahl hier.</translation>
     </message>
     <message>
         <source>The exact method keeps no descriptor.</source>
@@ -5992,10 +6032,6 @@
         <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
     </message>
     <message>
-        <source>The polyhedra of six particles, one row per loss function.</source>
-        <translation>Die Polyeder von sechs Partikeln, eine Zeile je Verlustfunktion.</translation>
-    </message>
-    <message>
         <source>The polyhedron is not finished yet.</source>
         <translation>Das Polyeder ist noch nicht fertig.</translation>
     </message>
@@ -6090,6 +6126,10 @@
     <message>
         <source>The slices state no positions; they were ordered by their numbers.</source>
         <translation>Die Schichten nennen keine Positionen; sie wurden nach ihren Nummern geordnet.</translation>
+    </message>
+    <message>
+        <source>The smallest mean RMSRE of the six descriptors; of equal ones, the smallest Jaccard distance</source>
+        <translation>Der kleinste mittlere RMSRE der sechs Deskriptoren; bei gleichen die kleinste Jaccard-Distanz</translation>
     </message>
     <message>
         <source>The smallest number of facets is sought at which no weighted descriptor has a larger error. V and CH cannot both be met: of their errors only what exceeds the lower bound counts.</source>
@@ -6388,6 +6428,10 @@
         <translation>Öffnen rückgängig machen</translation>
     </message>
     <message>
+        <source>Unfinished: {names}.</source>
+        <translation>Unvollständig: {names}.</translation>
+    </message>
+    <message>
         <source>Unit</source>
         <translation>Einheit</translation>
     </message>
@@ -6402,6 +6446,10 @@
     <message>
         <source>Unpacking into a temporary file</source>
         <translation>In eine temporäre Datei wird entpackt</translation>
+    </message>
+    <message>
+        <source>Unusual</source>
+        <translation>Auffällig</translation>
     </message>
     <message>
         <source>Upper cut</source>
@@ -6948,6 +6996,10 @@
         <translation>wird berechnet; das erste dauert länger …</translation>
     </message>
     <message>
+        <source>below each RMSRE [%] its {share:.0%} bootstrap interval</source>
+        <translation>unter jedem RMSRE [%] sein Bootstrap-Intervall zu {share:.0%}</translation>
+    </message>
+    <message>
         <source>below the sampling noise for N ≥ {count}</source>
         <translation>unter dem Stichprobenrauschen ab N = {count}</translation>
     </message>
@@ -6958,6 +7010,10 @@
     <message>
         <source>best so far</source>
         <translation>bisher bester</translation>
+    </message>
+    <message>
+        <source>best: {row}</source>
+        <translation>beste: {row}</translation>
     </message>
     <message>
         <source>better</source>
@@ -7040,10 +7096,6 @@
         <translation>verglichen bei je {count} Facetten</translation>
     </message>
     <message>
-        <source>computed with other choices</source>
-        <translation>mit anderen Einstellungen berechnet</translation>
-    </message>
-    <message>
         <source>concave</source>
         <translation>konkav</translation>
     </message>
@@ -7076,8 +7128,16 @@
         <translation>Randkörner ausgleichen</translation>
     </message>
     <message>
+        <source>corrected for grains at the border</source>
+        <translation>um Randkörner korrigiert</translation>
+    </message>
+    <message>
         <source>count</source>
         <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>cumulative</source>
+        <translation>kumuliert</translation>
     </message>
     <message>
         <source>current</source>
@@ -7098,6 +7158,14 @@
     <message>
         <source>degree</source>
         <translation>Grad</translation>
+    </message>
+    <message>
+        <source>degrees {first} to {last}</source>
+        <translation>Grade {first} bis {last}</translation>
+    </message>
+    <message>
+        <source>denoised</source>
+        <translation>entrauscht</translation>
     </message>
     <message>
         <source>density</source>
@@ -7288,10 +7356,6 @@
         <translation>Ordner mit {names}</translation>
     </message>
     <message>
-        <source>for the particle on screen and those after it, one row per loss function</source>
-        <translation>für das gezeigte Partikel und die danach, eine Zeile je Verlustfunktion</translation>
-    </message>
-    <message>
         <source>friction</source>
         <translation>Reibung</translation>
     </message>
@@ -7308,12 +7372,24 @@
         <translation>glTF (Blender)</translation>
     </message>
     <message>
+        <source>grain {label}</source>
+        <translation>Korn {label}</translation>
+    </message>
+    <message>
+        <source>grain {label}: {count:,} voxels, {volume} µm³</source>
+        <translation>Korn {label}: {count:,} Voxel, {volume} µm³</translation>
+    </message>
+    <message>
         <source>greatest distance of two points</source>
         <translation>größter Abstand zweier Punkte</translation>
     </message>
     <message>
         <source>grey level {level}</source>
         <translation>Grauwert {level}</translation>
+    </message>
+    <message>
+        <source>grey value {value:.4g}</source>
+        <translation>Grauwert {value:.4g}</translation>
     </message>
     <message>
         <source>grey values</source>
@@ -7326,6 +7402,10 @@
     <message>
         <source>hidden from the star point</source>
         <translation>vom Sternpunkt aus verdeckt</translation>
+    </message>
+    <message>
+        <source>histogram</source>
+        <translation>Histogramm</translation>
     </message>
     <message>
         <source>imported</source>
@@ -7536,8 +7616,16 @@
         <translation>Trägheitsmomente sind Summen über die Kugeln</translation>
     </message>
     <message>
+        <source>n = {facets}</source>
+        <translation>n = {facets}</translation>
+    </message>
+    <message>
         <source>nearly an ellipsoid</source>
         <translation>fast ein Ellipsoid</translation>
+    </message>
+    <message>
+        <source>new</source>
+        <translation>neu</translation>
     </message>
     <message>
         <source>next run at {next:.3g}</source>
@@ -7546,6 +7634,10 @@
     <message>
         <source>no</source>
         <translation>nein</translation>
+    </message>
+    <message>
+        <source>no change of a weight changes an error significantly</source>
+        <translation>keine Änderung eines Gewichts ändert einen Fehler signifikant</translation>
     </message>
     <message>
         <source>no degree up to {degree} would do.</source>
@@ -7622,6 +7714,10 @@
     <message>
         <source>number</source>
         <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>of {run}</source>
+        <translation>von {run}</translation>
     </message>
     <message>
         <source>one body of several convex parts, with mass and inertia of their union</source>
@@ -7828,6 +7924,10 @@
         <translation>siehe Hinweis</translation>
     </message>
     <message>
+        <source>seed {seed}</source>
+        <translation>Startwert {seed}</translation>
+    </message>
+    <message>
         <source>settle</source>
         <translation>Absetzen</translation>
     </message>
@@ -8000,6 +8100,14 @@
         <translation>Ziel</translation>
     </message>
     <message>
+        <source>target: fit of degree {l_max}</source>
+        <translation>Ziel: Anpassung vom Grad {l_max}</translation>
+    </message>
+    <message>
+        <source>target: particle</source>
+        <translation>Ziel: Partikel</translation>
+    </message>
+    <message>
         <source>tcp://HOST:8786 or tls://HOST:8786</source>
         <translation>tcp://HOST:8786 oder tls://HOST:8786</translation>
     </message>
@@ -8018,6 +8126,10 @@
     <message>
         <source>the engine sets it itself</source>
         <translation>die Engine legt ihn selbst fest</translation>
+    </message>
+    <message>
+        <source>the errors still fall at {count} facets, the largest number here</source>
+        <translation>die Fehler fallen auch bei {count} Facetten noch, der größten Anzahl hier</translation>
     </message>
     <message>
         <source>the fewest facets with all errors below {limit} %</source>
@@ -8164,8 +8276,8 @@
         <translation>Gewichte und Größen (sizes.csv)</translation>
     </message>
     <message>
-        <source>without noise</source>
-        <translation>ohne Rauschen</translation>
+        <source>with more, no error falls by more than {gain:.1%}</source>
+        <translation>mit mehr fällt kein Fehler um mehr als {gain:.1%}</translation>
     </message>
     <message>
         <source>worse, accepted</source>
@@ -8194,6 +8306,10 @@
     <message>
         <source>{at} of {total}</source>
         <translation>{at} von {total}</translation>
+    </message>
+    <message>
+        <source>{column} at {row}</source>
+        <translation>{column} bei {row}</translation>
     </message>
     <message>
         <source>{count:,} coefficients</source>
@@ -8268,10 +8384,6 @@
         <translation>{count} Facetten, Jaccard-Distanz J = {distance:.1%}, Verlust dieser Zeile {loss:.3g}</translation>
     </message>
     <message>
-        <source>{count} files were written to {folder}.</source>
-        <translation>{count} Dateien wurden nach {folder} geschrieben.</translation>
-    </message>
-    <message>
         <source>{count} grains</source>
         <translation>{count} Körner</translation>
     </message>
@@ -8306,6 +8418,14 @@
     <message>
         <source>{count} of them have fewer than {least} voxels and will be left out.</source>
         <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
+    </message>
+    <message>
+        <source>{count} of {total}</source>
+        <translation>{count} von {total}</translation>
+    </message>
+    <message>
+        <source>{count} of {total} particles measured</source>
+        <translation>{count} von {total} Partikeln gemessen</translation>
     </message>
     <message>
         <source>{count} of {total} runs formed a heap without a measurable angle.</source>
@@ -8460,8 +8580,8 @@
         <translation>{label}: {share:.3g} % der Voxel</translation>
     </message>
     <message>
-        <source>{least} voxels are a ball of {diameter:.1f} voxels in diameter.</source>
-        <translation>{least} Voxel sind eine Kugel von {diameter:.1f} Voxeln Durchmesser.</translation>
+        <source>{least} voxels = sphere of {diameter:.1f} voxels in diameter</source>
+        <translation>{least} Voxel = Kugel von {diameter:.1f} Voxeln Durchmesser</translation>
     </message>
     <message>
         <source>{lost} of {count} particles fell through the plate.</source>
@@ -8636,6 +8756,10 @@
         <translation>{preset} (geändert)</translation>
     </message>
     <message>
+        <source>{problem} All particles are shown.</source>
+        <translation>{problem} Alle Partikel sind zu sehen.</translation>
+    </message>
+    <message>
         <source>{real} of {asked} planes bound a facet: the others are redundant.</source>
         <translation>{real} von {asked} Ebenen begrenzen eine Facette: die übrigen sind überzählig.</translation>
     </message>
@@ -8646,10 +8770,6 @@
     <message>
         <source>{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap interval)</source>
         <translation>{row}, {column}: {value:.3g} % ({low:.3g} bis {high:.3g}; {share:.0%}-Bootstrap-Bereich)</translation>
-    </message>
-    <message>
-        <source>{share:.0%} bootstrap intervals</source>
-        <translation>{share:.0%}-Bootstrap-Intervalle</translation>
     </message>
     <message>
         <source>{share:.0%} interval</source>

@@ -37,7 +37,13 @@ FORBIDDEN = {
 }
 """Commands that ask for files of the machine, or close the window."""
 LONG_WORK = {
-    *("toast_details", "batch_go", "lmax_study_start", "coarsening_study_start", "solids_start"),
+    *(
+        "toast_details",
+        "batch_go",
+        "lmax_study_result_button",
+        "coarsening_study_result_button",
+        "solids_result_button",
+    ),
     *("faces_start", "tradeoff_start", "sensitivity_start"),
 }
 """Buttons that are not clicked."""

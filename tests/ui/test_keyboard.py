@@ -26,7 +26,6 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
-from regolith_studio.session.tasks import Task
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.help import CitationLinks
 from regolith_studio.ui.dialogs.opening import UnitDialog
@@ -35,7 +34,7 @@ from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.views.view import WHEEL_ZOOM
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.labels import CitingLabel
-from regolith_studio.ui.widgets.study_frame import StudyFrame
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 KINDS = (
     *(QAbstractButton, QComboBox, QAbstractSpinBox, QAbstractSlider),
@@ -248,20 +247,23 @@ def test_that_tab_comes_to_each_reference_and_return_opens_its_citation(shown):
     links.deleteLater()
 
 
-def test_that_the_keys_stay_with_a_study_while_it_runs(shown):
-    frame = StudyFrame("some_study", QWidget())
+def test_that_the_keys_stay_with_a_result_while_it_is_computed(shown):
+    card = ResultView("some_study", ("Answer",), "Compute")
     window = QWidget()
     column = QVBoxLayout(window)
-    column.addWidget(frame)
+    column.addWidget(card)
     column.addWidget(QLineEdit())
     shown(window)
     window.activateWindow()
     assert QTest.qWaitForWindowActive(window, 5000)
-    frame.start.setFocus()
-    frame.show_task(Task(1, "study", "Study", 12))
-    assert frame.stop.hasFocus()
-    frame.show_task(None)
-    assert frame.start.hasFocus()
+    asked = []
+    card.startRequested.connect(lambda: asked.append("start"))
+    card.stopRequested.connect(lambda: asked.append("stop"))
+    card.button.setFocus()
+    for state in (ResultState.NONE, ResultState.RUNNING):
+        card.show_record(ResultRecord(state=state))
+        QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Space)
+    assert asked == ["start", "stop"]
 
 
 def chord(window, key, modifiers=Qt.KeyboardModifier.NoModifier):

@@ -18,7 +18,6 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session
-from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS
@@ -27,7 +26,6 @@ from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
-from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
 from regolith_studio.ui.pages.model.views import DistributionsPanel, distance_text
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
@@ -214,7 +212,7 @@ def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_o
 def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     take(page, rough_sample())
     choose_model(page, "gaussian_field")
-    assert not page.evaluation.frame.start.isEnabled()
+    assert not page.evaluation.card.button.isEnabled()
     page.source.fit.click()
     assert page.live.spectrum.value() == pytest.approx(
         np.sqrt(page._model.spectrum[1:]) / page._model.mean, rel=1e-12
@@ -322,24 +320,6 @@ def test_that_the_state_of_the_page_is_plain_and_comes_back(page):
     assert page.state()["drawing"]["n"] == 100
     page.restore(state)
     assert page.state() == state
-
-
-def test_that_stop_answers_before_the_work_has_ended(shown):
-    panel = shown(EvaluationPanel())
-    asked = []
-    panel.cancelRequested.connect(asked.append)
-    panel.show_task(Task(3, "judge", "Evaluating models"))
-    words = panel.frame.stop.text()
-    panel.frame.stop.click()
-    assert asked == [3]
-    for _ in range(2):
-        assert not panel.frame.stop.isEnabled()
-        assert panel.frame.stop.text() == "Stopping …"
-        panel.show_task(Task(3, "judge", "Evaluating models", 1, 10))
-    panel.show_task(None)
-    panel.show_task(Task(4, "judge", "Evaluating models"))
-    assert panel.frame.stop.isEnabled()
-    assert panel.frame.stop.text() == words
 
 
 @pytest.mark.slow

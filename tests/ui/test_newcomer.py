@@ -229,7 +229,7 @@ def test_that_a_polyhedron_keeps_volume_area_and_aspect_ratio(newcomer):
 @pytest.mark.slow
 def test_that_figure_8_is_reproduced_for_the_sample_and_saved(newcomer, tmp_path):
     newcomer.click(QWidget, "page_studies")
-    newcomer.click(QPushButton, "coarsening_study_start")
+    newcomer.click(QPushButton, "coarsening_study_result_button")
     newcomer.wait(lambda: newcomer.window.session.tasks, 20.0)
     newcomer.rest()
     newcomer.answer(tmp_path, lambda: newcomer.tool("Save figures and tables"))

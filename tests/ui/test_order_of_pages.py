@@ -13,8 +13,8 @@ from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.dataset.views import CELL
 from regolith_studio.ui.widgets.formula import BREAK, LOWEST_LINE, MIN_LINE_HEIGHT, FormulaLabel
 
-WITH_CHOICES = ("explore", "scan", "model", "studies", "dataset")
-"""On the page Angle of repose the choices are behind its answer, in a tab."""
+WITH_CHOICES = ("explore", "scan", "model", "dataset")
+"""On the page Angle of repose the choices are behind its answer, in a tab; on Studies above all tabs."""
 BUTTONS = {
     "model": ("model_fit", "model_half"),
     "dataset": ("dataset_find", "dataset_count"),
@@ -73,4 +73,4 @@ def test_that_no_line_of_a_formula_is_lower_than_twenty_pixels_however_narrow(sh
 def test_that_the_answer_of_studies_can_be_computed_beside_its_choices(window, app):
     page = window.go("studies")
     app.processEvents()
-    assert page.findChild(QPushButton, "coarsening_study_start").isVisible()
+    assert page.findChild(QPushButton, "coarsening_study_result_button").isVisible()

@@ -16,6 +16,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
+from regolith_studio.ui.widgets.labels import short_number
 
 SECONDS = 120.0
 
@@ -64,7 +65,8 @@ def test_that_the_filter_narrows_table_plot_and_statistics(page):
     assert page.statistics.value().rows[0][1] == len(names)
     page.filter.setText("S<oops")
     assert page.assessment.isVisible()
-    assert [entry.id for entry in page.table.particles.rows] == names
+    assert page.assessment.text().endswith("All particles are shown.")
+    assert len(page.table.particles.rows) == 12  # not what the filter was while it was typed
     page.commands()["clear_filter"]()
     assert not page.assessment.isVisible()
     assert len(page.table.particles.rows) == 12
@@ -124,16 +126,23 @@ def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
 def test_that_what_a_project_keeps_of_the_page_comes_back(page):
     page.filter.setText("flat")
     page.scatter.set_axes("volume", "sphericity")
+    column = [each.key for each in page.table.particles.columns].index("convexity")
+    page.table.horizontalHeader().sectionClicked.emit(column)
+    assert page.statistics.choices()["key"] == "convexity"
     kept = page.state()
+    page.statistics.choose({"key": "volume", "weighting": "volume"})
     page.filter.clear()
     page.scatter.set_axes("flatness", "elongation")
     page.restore(kept)
     assert page.filter.text() == "flat"
     assert page.scatter.axes() == ("volume", "sphericity")
+    assert page.statistics.choices() == kept["statistics"]
 
 
 def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(shown):
-    panel = shown(StatisticsPanel())
+    panel = StatisticsPanel()
+    shown(panel)
+    shown(panel.distribution)
     sphere = icosphere(2)
     plain = [
         ParticleEntry(name, Particle(name, mesh), None, describe(mesh))
@@ -147,6 +156,12 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
     panel.show_entries(weighted)
     assert panel.border.isVisible()
     assert panel.value().rows[0][2] == pytest.approx((small + 3 * large) / 4)
+    histogram, cumulative = panel.plot.curves
+    assert max(histogram.y) == pytest.approx(75.0)
+    assert cumulative.x == pytest.approx((small, small, large, large))
+    assert cumulative.y == pytest.approx((0.0, 25.0, 25.0, 100.0))
+    assert panel.card.record.values[1] == short_number(large)
+    assert "corrected for grains at the border" in panel.card.record.made_with
     QTest.mouseClick(panel.border, Qt.MouseButton.LeftButton, pos=QPoint(8, panel.border.height() // 2))
     assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
 

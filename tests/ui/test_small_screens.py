@@ -63,14 +63,14 @@ def test_that_the_buttons_of_studies_are_whole_in_large_letters(shown, preferenc
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.resize(1280, 800)
     page = window.go("studies")
-    frames = (page.lmax_study.frame, page.coarsening_study.frame, page.gallery.frame)
-    for frame in frames:
-        frame.set_count(12)
     for letters in (150, 200):
         window.appearance.choose(**{FONT_SIZE: letters})
         for _ in range(5):
             app.processEvents()
-        for button in (frame.start for frame in frames):
+        for tab in range(page.tabs.count()):
+            page.tabs.setCurrentIndex(tab)
+            app.processEvents()
+            button = page.tabs.widget(tab).card.button
             assert button.visibleRegion().boundingRect() == button.rect(), letters
             assert button.width() >= button.fontMetrics().horizontalAdvance(button.text()) + 8
 

@@ -15,10 +15,11 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
-from regolith_studio.studies.sweeps import sufficient_facets
+from regolith_studio.studies.sweeps import best_row, sufficient_facets
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.theme import DARK
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState
 
 SECONDS = 170.0
 ASKED = "regolith_studio.ui.dialogs.folder.FolderDialog.ask"
@@ -43,16 +44,22 @@ def window(shown, preferences, wait):
 
 def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     page = window.go("studies")
-    page.gallery.frame.start.click()
+    page.gallery.card.button.click()
     wait(lambda: len(page.gallery.value()) == 2 * len(paper_variants()) and not window.session.tasks, SECONDS)
     table = page.gallery.table
-    assert (table.rowCount(), table.columnCount()) == (len(paper_variants()), 2)
-    for row in range(table.rowCount()):
+    assert (table.rowCount(), table.columnCount()) == (1 + len(paper_variants()), 2)
+    assert table.verticalHeaderItem(0).text() == "Particle"
+    wait(lambda: table.item(0, 1) is not None and not table.item(0, 1).icon().isNull())
+    for row in range(1, table.rowCount()):
         assert re.fullmatch(r"J \d+\.\d\s%", table.item(row, 0).text())
         assert not table.item(row, 0).icon().isNull()
-    page.gallery.frame.start.click()
-    window.session.cancel(window.session.tasks[-1].id)
+    page.gallery.card.button.click()
+    page.gallery.card.button.click()
     wait(lambda: not window.session.tasks, SECONDS)
+    assert page.gallery.card.record.state is ResultState.STOPPED
+    window.session.adopt([window.session.particles[0].particle])
+    wait(lambda: page.gallery.card.record == ResultRecord())
+    assert not page.gallery.value()
 
 
 @pytest.mark.slow
@@ -69,17 +76,17 @@ def test_that_the_gallery_has_a_row_for_each_loss_that_is_chosen(window, wait, s
         QTest.mouseClick(menu, Qt.MouseButton.LeftButton, pos=menu.actionGeometry(action).center())
         assert menu.isVisible()  # more can be chosen
     menu.close()
-    page.gallery.frame.start.click()
+    page.gallery.card.button.click()
     labels = [losses()[name].label for name in page.bar.names()]
     wait(lambda: len(page.gallery.value()) == 2 * len(labels), SECONDS)
     settled(window)
-    shown_rows = [page.gallery.table.verticalHeaderItem(r).text() for r in range(len(labels))]
+    shown_rows = [page.gallery.table.verticalHeaderItem(1 + r).text() for r in range(len(labels))]
     assert shown_rows == labels
     assert "Sphericity only" in labels
     assert "All descriptors" not in labels
-    before = page.gallery.table.item(0, 0).icon().cacheKey()
+    before = page.gallery.table.item(1, 0).icon().cacheKey()
     page.gallery.set_theme(DARK)
-    assert page.gallery.table.item(0, 0).icon().cacheKey() != before
+    assert page.gallery.table.item(1, 0).icon().cacheKey() != before
 
 
 def test_that_one_loss_always_stays(shown):
@@ -121,7 +128,10 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
     told = panel.part.value_at(panel.part.scene_position(12.0, volume.y[1]))
     assert told.startswith("V\nFacets: 12\n")
     enough = sufficient_facets(study)
-    assert f"<b>{enough} facets</b>" in panel.answer.text()
+    card = panel.card
+    assert card.record.values == (str(enough) if enough < 30 else "–",)
+    assert card.record.made_from == "2 particles"
+    assert card.record.made_with == "Quadric decimation, n = 8 – 30, target: fit of degree 4, seed 0"
     panel.take.click()
     assert window.session.choices.n_facets == enough
     assert f"({volume.low[1]:.4g} to {volume.high[1]:.4g})" in told
@@ -129,7 +139,8 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
     assert len(header) == len(rows[0]) == 7
     window.session.choose(seed=5)
     settled(window)
-    assert panel.frame.hint_label.text().endswith("computed with other choices")
+    assert card.record.state is ResultState.STALE
+    assert card.button.text() == "Recompute"
     monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
     page.save()
     settled(window)
@@ -144,7 +155,7 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
 @pytest.mark.slow
 def test_that_the_gallery_is_saved_as_a_picture_and_as_numbers(window, wait, settled, monkeypatch, tmp_path):
     page = window.go("studies")
-    page.gallery.frame.start.click()
+    page.gallery.card.button.click()
     wait(lambda: len(page.gallery.value()) == 2 * len(paper_variants()) and not window.session.tasks, SECONDS)
     monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
     page.save()
@@ -159,17 +170,18 @@ def test_that_the_gallery_is_saved_as_a_picture_and_as_numbers(window, wait, set
 
 def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(window, settled):
     page = window.go("studies")
-    page.variations["tradeoff"].frame.start.click()
+    page.variations["tradeoff"].card.button.click()
     assert "A baseline has no loss" in window.toast.sentence.text()
     page.variations["facets"].values.setText("12, many")
     page.sweeps.start("facets")
     assert "numbers with commas" in window.toast.sentence.text()
     page.variations["facets"].values.setText("12, 20")
     page.sweeps.start("facets")
-    task = window.session.tasks[-1]
-    page.variations["facets"].frame.cancelRequested.emit(task.id)
+    button = page.variations["facets"].card.button
+    assert button.text() == "Stop"
+    button.click()
     settled(window)
-    assert not page.variations["facets"].frame.stop.isVisibleTo(page)
+    assert button.text() in ("Compute", "Recompute")
 
 
 def test_that_no_two_rows_of_the_trade_off_share_a_colour():
@@ -232,11 +244,17 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
     settled(window)
     assert not page.lmax_study.plot.is_empty()
     assert len(page.coarsening_study.table.values()) == len(paper_variants())
+    heads = page.coarsening_study.table.table.verticalHeaderItem
+    marked = [row for row in range(len(paper_variants())) if heads(row).text().startswith("★")]
+    assert marked == [best_row(window.session.results.coarsening_study)]
     folder = tmp_path / "files"
     folder.mkdir()
     monkeypatch.setattr(ASKED, lambda *_: str(folder))
     window.menus.by_name["studies.save"].trigger()
-    wait(lambda: not window.session.tasks and "files were written" in window.toast.sentence.text(), SECONDS)
+    wait(
+        lambda: not window.session.tasks and "Tables and figures are in" in window.toast.sentence.text(),
+        SECONDS,
+    )
     assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg", ".sha256"}
 
 

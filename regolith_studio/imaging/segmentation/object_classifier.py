@@ -193,9 +193,7 @@ def train_on_examples(
         if label <= 0:
             raise InputError(f"There is no object at voxel {position}; choose voxels of segmented objects.")
         chosen[label] = (position, kind)
-    low, centre, high = np.quantile(table.vectors, (0.16, 0.5, 0.84), axis=0)
-    spread = (high - low) / 2
-    spread[spread <= 1e-9 * np.maximum(np.abs(centre), 1.0)] = 1.0
+    centre, spread = _centre_and_spread(table.vectors)
     return ObjectTraining(
         np.array([position for position, _ in chosen.values()], dtype=np.int64).reshape(-1, 3),
         np.array([kind for _, kind in chosen.values()], dtype=np.int64),
@@ -206,6 +204,65 @@ def train_on_examples(
         actions,
         scan,
     )
+
+
+def _centre_and_spread(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Median and half the range of the middle 68 % of each descriptor; 1 where all objects are alike."""
+    low, centre, high = np.quantile(vectors, (0.16, 0.5, 0.84), axis=0)
+    spread = (high - low) / 2
+    spread[spread <= 1e-9 * np.maximum(np.abs(centre), 1.0)] = 1.0
+    return centre, spread
+
+
+SUSPICIOUS = 2.0
+"""Distance from the median in spreads beyond which an object may be several grains, or a part of one."""
+
+
+@dataclass(frozen=True)
+class SuspectObject:
+    """An object unlike the others.
+
+    Parameters
+    ----------
+    label, box, n_voxels
+        Where it is, and its size.
+    solidity
+        Volume over that of the convex hull.
+    deviation
+        Distance from the median in spreads: of its solidity below it, or of its size on either side.
+    by_size
+        Whether its size is what is unusual.
+    """
+
+    label: int
+    box: Box
+    n_voxels: int
+    solidity: float
+    deviation: float
+    by_size: bool
+
+
+def suspect_objects(objects: ObjectTable) -> list[SuspectObject]:
+    """Objects that are unusually concave, large or small, the most unusual one first."""
+    size, solidity = 0, 4  # of OBJECT_FEATURES
+    centre, spread = _centre_and_spread(objects.vectors)
+    away = (objects.vectors - centre) / spread
+    parts = np.stack([-away[:, solidity], np.abs(away[:, size])])
+    deviation, by_size = parts.max(axis=0), parts.argmax(axis=0) == 1
+    order = np.argsort(-deviation, kind="stable")
+    rows = order[deviation[order] > SUSPICIOUS].tolist()
+    table = objects.table
+    return [
+        SuspectObject(
+            int(table.labels[row]),
+            box_between(table.low[row].tolist(), table.high[row].tolist()),
+            int(table.counts[row]),
+            float(objects.vectors[row, solidity]),
+            float(deviation[row]),
+            bool(by_size[row]),
+        )
+        for row in rows
+    ]
 
 
 @lru_cache(maxsize=4)

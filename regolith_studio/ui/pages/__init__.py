@@ -55,8 +55,8 @@ What a page can rely on
   ``Started``, ``Progress`` and ``Partial`` events in a thread; requests are numbered, the newest of a
   queue wins, what an older one says is dropped. Progress, time left and the stop button are in the
   status bar and in the task list by themselves; ``context.session.cancel(number)`` cancels, and
-  :class:`~regolith_studio.ui.widgets.study_frame.StudyFrame` shows a task beside a plot. Never compute
-  in a slot for more than 50 ms.
+  :class:`~regolith_studio.ui.run_controller.RunController` runs one job with its state, time left and
+  result on a card. Never compute in a slot for more than 50 ms.
 * **Three-dimensional views**: ``make_view(context.views, theme.surroundings)`` from ``ui.views.factory``,
   filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.on_close`.
 * **Words**: ``context.toast.note("Saved.")``, ``context.toast.problem("One sentence.", details)``.
@@ -68,7 +68,7 @@ What a page can rely on
 * **Closing**: the window asks when tasks run or when :meth:`PageWidget.busy` says a sentence;
   :meth:`PageWidget.on_close` comes last.
 * Widgets, plots and themes: ``ui.widgets`` (``Plot``, ``CurvePlot``, ``BarPlot``, ``HeatTable``,
-  ``NumberSlider``, ``SettingsForm``, ``StudyFrame``, ``labels``), ``ui.theme``, ``ui.layout``. No style
+  ``NumberSlider``, ``SettingsForm``, ``ResultView``, ``labels``), ``ui.theme``, ``ui.layout``. No style
   sheets on single widgets; every control has an accessible name and an object name.
 * In tests: ``window.go("grains")`` builds and shows the page and returns its widget.
 

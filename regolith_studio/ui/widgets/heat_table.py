@@ -90,6 +90,13 @@ class HeatTable(QWidget):
         set_head_tips(self.table, tips)
         self._fill()
 
+    def mark_row(self, row: int, tip: str) -> None:
+        """Mark the best row, with what makes it the best as its tool tip."""
+        if (head := self.table.verticalHeaderItem(row)) is not None:
+            head.setText(f"★ {head.text()}")
+            head.setToolTip(inert(f"{head.toolTip()}\n{tip}"))
+        self._fit_to_font()
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._fit_to_font()

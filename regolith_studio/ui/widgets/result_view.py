@@ -1,5 +1,6 @@
 """The card of a result: its values in large figures, what they were made of, their state and its button."""
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -9,7 +10,8 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QWidget
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.translation import tr
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.labels import FixedHeightText, hint_label
 
 MAGNIFICATION = 1.75
@@ -18,6 +20,8 @@ LINES = 3
 """Visible lines of the sentence."""
 WIDEST_FIGURE, SENTENCE_DIGITS = "0.0000", 40
 """What a figure has room for, and digits of room beside the figures without which the sentence goes below."""
+MANY = 500
+"""Steps of a task from which on its progress is shown in per cent."""
 MIN_LINES = 34
 """Lines of text that a window must be high enough for if the sentence is to go below the figures."""
 
@@ -31,6 +35,44 @@ class ResultState(Enum):
     STALE = N_("Outdated")
     STOPPED = N_("Stopped")
     FAILED = N_("Failed")
+
+
+def time_left(done: int, total: int, seconds: float) -> str:
+    """Estimated remaining time as text; empty while it is unknown."""
+    if not 0 < done < total or seconds < 1.0:
+        return ""
+    rest = seconds * (total - done) / done
+    if rest < 60:
+        return tr("about {seconds} s left", seconds=max(1, round(rest)))
+    if rest < 5400:
+        return tr("about {minutes} min left", minutes=round(rest / 60))
+    return tr("about {hours:.1f} h left", hours=rest / 3600)
+
+
+def progress_text(task: Task) -> str:
+    """How much is done: in steps, or in per cent where these are many."""
+    if task.total >= MANY:
+        return number_text(task.done / task.total, ".0%")
+    return tr("{at} of {total}", at=task.done, total=task.total)
+
+
+class TaskClock:
+    """Measures the time that a task has been running, without its pauses."""
+
+    def __init__(self, number: int = 0) -> None:
+        self.number = number
+        self._worked, self._since, self._running = 0.0, time.monotonic(), True
+
+    def show(self, task: Task) -> str:
+        """Time left, or that the task is paused or about to end."""
+        self._worked, self._since = self._seconds(), time.monotonic()
+        self._running = not task.paused
+        if task.stopping:
+            return tr("Stopping …")
+        return tr("paused") if task.paused else time_left(task.done, task.total, self._worked)
+
+    def _seconds(self) -> float:
+        return self._worked + (time.monotonic() - self._since if self._running else 0.0)
 
 
 @dataclass(frozen=True)
@@ -50,10 +92,11 @@ class ResultRecord:
     state: ResultState = ResultState.NONE
     note: str = ""
 
-    @property
-    def sentences(self) -> str:
-        """State, origin and note as a text."""
+    def sentences(self, progress: str = "") -> str:
+        """State with its progress, origin and note as a text."""
         state = "" if self.state in (ResultState.NONE, ResultState.CURRENT) else tr(self.state.value)
+        if self.state is ResultState.RUNNING:
+            state = ", ".join(filter(None, (state, progress)))
         origin = ", ".join(each for each in (self.made_from, self.made_with) if each)
         return "\n".join(each for each in (": ".join(filter(None, (state, origin))), self.note) if each)
 
@@ -86,6 +129,8 @@ class ResultView(QFrame):
         self.setObjectName(name)
         self.setProperty("role", "card")
         self._texts, self._lead, self._record = (start, again or start), lead, ResultRecord()
+        self._clock, self._progress, self._stopping = TaskClock(), "", False
+        self._problem = ""
         self.figures = tuple(QLabel("–") for _ in captions)
         self.captions = tuple(hint_label(caption) for caption in captions)
         self.sentence = hint_label()
@@ -132,7 +177,20 @@ class ResultView(QFrame):
         for label, text in zip(self.figures, values, strict=True):
             label.setText(text)
             label.setEnabled(record.state is ResultState.CURRENT)
-        self.sentence.setText(record.sentences)
+        self._describe()
+
+    def show_task(self, task: Task | None) -> None:
+        """Show how far a task is and the time that is left, or that none is running."""
+        self._progress, self._stopping = "", task is not None and task.stopping
+        if task is not None:
+            if self._clock.number != task.id:
+                self._clock = TaskClock(task.id)
+            steps = progress_text(task) if task.total > 1 else ""
+            self._progress = ", ".join(filter(None, (steps, self._clock.show(task))))
+        self._describe()
+
+    def _describe(self) -> None:
+        self.sentence.setText(self._record.sentences(self._progress))
         self._name_button()
 
     def set_start(self, text: str) -> None:
@@ -143,12 +201,15 @@ class ResultView(QFrame):
     def _name_button(self) -> None:
         state = self._record.state
         start = self._texts[0 if state in (ResultState.NONE, ResultState.FAILED) else 1]
-        self.button.setText(tr("Stop") if state is ResultState.RUNNING else start)
+        running = state is ResultState.RUNNING
+        self.button.setText((tr("Stopping …") if self._stopping else tr("Stop")) if running else start)
+        self.button.setEnabled(not self._stopping if running else not self._problem)
+        self.button.setToolTip("" if running else self._problem)
 
     def set_startable(self, problem: str = "") -> None:
         """Let the button start something, unless there is a problem, which is its tool tip then."""
-        self.button.setEnabled(not problem or self._record.state is ResultState.RUNNING)
-        self.button.setToolTip(problem)
+        self._problem = problem
+        self._name_button()
 
     def add(self, part: QWidget) -> None:
         """Put a button at the end."""

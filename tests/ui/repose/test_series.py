@@ -21,7 +21,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait, workers)
     panel = page.study
     panel.workers.setMaximum(2)  # also on a machine of one core
     panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1, "workers": workers})
-    page.start_study()
+    page.studies.start()
     wait(lambda: panel.table.rows.rowCount() == 2)
     wait(lambda: panel.card.record.state is ResultState.CURRENT)
     assert [panel.table.text(row, 0) for row in (0, 1)] == ["0.2", "0.8"]
@@ -30,7 +30,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait, workers)
     assert not page.busy()
     before = {path: path.stat().st_mtime_ns for path in folder.glob("*/repose.json")}
     assert len(before) == 2
-    page.start_study()
+    page.studies.start()
     wait(lambda: panel.card.record.state is ResultState.CURRENT)
     assert {path: path.stat().st_mtime_ns for path in before} == before
     panel.table.selectRow(1)
@@ -55,15 +55,15 @@ def test_that_a_study_of_names_and_piles_is_drawn(page):
 
 
 def test_that_a_study_says_what_it_lacks(page, dataset):
-    page.start_study()
+    page.studies.start()
     assert "no dataset yet" in page._context.toast.sentence.text()
     page.study.key.setCurrentIndex(page.study.key.findData("n_facets"))
     assert page.study.values.text() == "8, 20, 60"
-    page.start_study()
+    page.studies.start()
     assert "open particles" in page._context.toast.sentence.text()
     small(page, dataset)
     page.study.restore({"key": "gravity", "values": "moon", "repeats": 2})
-    page.start_study()
+    page.studies.start()
     assert "numbers with commas" in page._context.toast.sentence.text()
 
 
@@ -98,7 +98,7 @@ def test_that_a_calibration_without_a_usable_run_shows_no_value(page):
         document = {"state": "finished", "measurement": {"status": "no flanks"}}
         calibration = calibration.with_run(CalibrationRun("run", (friction,), document))
     record = page.calibration.show_calibration(calibration)
-    text = record.sentences
+    text = record.sentences()
     assert "2 of 2 runs formed a heap without a measurable angle" in text
     assert record.values == ()
     assert page.calibration.posterior.curves == ()
@@ -114,11 +114,12 @@ def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, m
             time.sleep(0.01)
             yield Progress(1, 2)
 
-    monkeypatch.setattr(f"regolith_studio.ui.pages.repose.page.{job}", endless)
+    monkeypatch.setattr(f"regolith_studio.ui.pages.repose.{name}.{job}", endless)
     small(page, dataset)
     panel = getattr(page, name)
-    getattr(page, f"start_{name}")()
+    page.commands()[f"start_{name}"]()
     assert page.busy()
+    wait(lambda: panel.card.sentence.text().startswith("Running, 1 of 2"), 5.0)
     panel.card.button.click()
     wait(lambda: not page.busy(), 5.0)
     assert panel.card.button.text() == "Resume"
@@ -129,19 +130,19 @@ def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, m
 def test_that_a_calibration_runs_and_goes_on_in_its_folder(page, dataset, wait):
     small(page, dataset)
     page.calibration.restore({"angle": 25.0, "runs": 2})
-    page.start_calibration()
+    page.calibrations.start()
     wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
     (folder,) = (page._folder / "studies").iterdir()
     before = (folder / "run_01" / "repose.json").stat().st_mtime_ns
     page.calibration.restore(page.state()["calibration"] | {"angle": 27.0})
-    page.start_calibration()
+    page.calibrations.start()
     wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
     assert (folder / "run_01" / "repose.json").stat().st_mtime_ns == before
     assert json.loads((folder / "calibration.json").read_text())["targets"][0]["value"] == 27.0
 
 
 def test_that_a_calibration_says_what_it_lacks(page, dataset):
-    page.start_calibration()
+    page.calibrations.start()
     assert "no dataset yet" in page._context.toast.sentence.text()
     small(page, dataset)
     for words, sentence in (
@@ -149,5 +150,5 @@ def test_that_a_calibration_says_what_it_lacks(page, dataset):
         ("1, 0.2", "from a lower to a higher value"),
     ):
         page.calibration.restore({"key": "static_friction", "range": words})
-        page.start_calibration()
+        page.calibrations.start()
         assert sentence in page._context.toast.sentence.text()

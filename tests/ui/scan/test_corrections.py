@@ -203,8 +203,9 @@ def test_that_a_line_which_divides_nothing_is_taken_back_with_a_sentence(page, w
 @pytest.mark.usefixtures("objects")
 def test_that_the_grains_stand_beside_the_slices_in_the_same_colours(page, wait):
     wait(lambda: page.slices._surface is not None, SECONDS)
-    _, surface = page.slices._surface
-    assert set(surface.labels) == {1, 2, 3, 4, 5, 6}
+    _, surface, sizes = page.slices._surface
+    assert set(surface.labels) == set(sizes) == {1, 2, 3, 4, 5, 6}
+    assert sum(sizes.values()) == np.count_nonzero(page.grains.labels.array > 0)
     assert "6 grains" in page.slices.grains.frame.title
     picture = page.slices.grains.frame.view.picture().astype(int)
     coloured = np.ptp(picture, axis=2) > 60

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -26,7 +26,6 @@ from regolith_studio.io.tables import Cell, Table
 from regolith_studio.jobs.model_evaluation import ModelEvaluationResult
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
-from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import (
@@ -45,8 +44,7 @@ from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.heat_table import centred_hint
 from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, unbroken, with_subscripts
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
-from regolith_studio.ui.widgets.study_frame import StudyFrame
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 
 MIN_WIDTH, MIN_HEIGHT = 190, 180
 """Pixels of one plot; where a row has no room for all, there are more rows."""
@@ -291,9 +289,6 @@ NUMBERS = Qt.AlignmentFlag.AlignCenter
 class EvaluationPanel(QWidget):
     """Starts a study and shows its results so far."""
 
-    startRequested = Signal()  # noqa: N815
-    cancelRequested = Signal(int)  # noqa: N815
-
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_judgement")
@@ -301,9 +296,10 @@ class EvaluationPanel(QWidget):
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = hint_label()
-        self.assessment = ResultView("model_verdict", (tr("W / noise"), tr("Classifier accuracy")))
+        captions = (tr("W / noise"), tr("Classifier accuracy"))
+        self.card = ResultView("model_judge", captions, tr("Evaluate"), tr("Evaluate"))
         for place, tip in enumerate((TIPS[1], TIPS[4])):
-            self.assessment.caption(place, self.assessment.captions[place].text(), tr(tip))
+            self.card.caption(place, captions[place], tr(tip))
         self.figures = {name: PanelGrid(name) for name in FIGURES}
         self.places = {name: scrolled(grid) for name, grid in self.figures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
@@ -314,40 +310,11 @@ class EvaluationPanel(QWidget):
             self.tabs.addTab(self.tables[name], tr(title))
         for name, title in FIGURES.items():
             self.tabs.addTab(self.places[name], tr(title))
-        inside = QWidget()
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 4, 0, 0)
-        column.addWidget(self.tabs, 1)
-        self.frame = StudyFrame("model_judge", inside)
-        self._stopped, self._stop_words = 0, self.frame.stop.text()
-        self.frame.startRequested.connect(self.startRequested)
-        self.frame.cancelRequested.connect(self._stop)
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setContentsMargins(8, 6, 8, 0)
+        layout.addWidget(self.card)
         layout.addLayout(self._options())
-        layout.addWidget(self.frame)
-        self.set_ready("")
-
-    def set_ready(self, why_not: str) -> None:
-        """Enable the start, or show why there are no measured particles."""
-        self.frame.start.setText(tr("Evaluate"))
-        self.frame.start.setEnabled(not why_not)
-        self.frame.set_hint(why_not)
-
-    def show_task(self, task: Task | None) -> None:
-        """Show the progress of a study, that it is being stopped, or that none is running."""
-        self.frame.show_task(task)
-        self._show_stopping(task is not None and task.id == self._stopped)
-
-    def _stop(self, number: int) -> None:
-        """Show the request at once, as starting processes take seconds to end."""
-        self._stopped = number
-        self._show_stopping(True)
-        self.cancelRequested.emit(number)
-
-    def _show_stopping(self, stopping: bool) -> None:
-        self.frame.stop.setEnabled(not stopping)
-        self.frame.stop.setText(tr("Stopping …") if stopping else self._stop_words)
+        layout.addWidget(self.tabs, 1)
 
     def value(self) -> dict[str, Any]:
         """All models or only the selected one, number of splits, and draws from each fit."""
@@ -363,8 +330,8 @@ class EvaluationPanel(QWidget):
         self.splits.setValue(int(value.get("splits", 5)))
         self.repeats.setValue(int(value.get("repeats", 1)))
 
-    def show_evaluated(self, evaluated: ModelEvaluationResult | None) -> None:
-        """Show a study, complete or not, or nothing."""
+    def show_evaluated(self, evaluated: ModelEvaluationResult | None) -> ResultRecord:
+        """Show a study, complete or not, or nothing; returns the record of the card."""
         for name, grid in self.figures.items():
             if evaluated is not None:
                 grid.set_panels(evaluated.panels[name], evaluated.study)
@@ -376,7 +343,7 @@ class EvaluationPanel(QWidget):
                 view.show_table(TABLES[name][1](evaluated.study))
         self._stack.setCurrentIndex(1 if evaluated else 0)
         if evaluated is None:
-            return
+            return ResultRecord()
         table = ranking_table(evaluated.study)
         self.ranking.setRowCount(len(table.rows))
         for row, cells in enumerate(table.rows):
@@ -396,9 +363,9 @@ class EvaluationPanel(QWidget):
                     item.setTextAlignment(NUMBERS)
                 self.ranking.setItem(row, column, item)
         self.notes.setText(with_subscripts(translate(table.notes[0])))
-        self._show_answer(*table.rows[0][:5])
+        return self._answer(*table.rows[0][:5])
 
-    def _show_answer(self, key: Cell, near: Cell, _gap: Cell, _energy: Cell, told: Cell) -> None:
+    def _answer(self, key: Cell, near: Cell, _gap: Cell, _energy: Cell, told: Cell) -> ResultRecord:
         """The assessment on the model that is nearest to the sample."""
         model = tr(MODELS[str(key)].label)
         if float(str(near)) <= NOISE and float(str(told)) <= TOLD_APART:
@@ -410,11 +377,10 @@ class EvaluationPanel(QWidget):
                 near=float(str(near)),
             )
         values = (number_text(float(str(near)), ".2f"), number_text(float(str(told)), ".0%"))
-        self.assessment.show_record(ResultRecord(values, state=ResultState.CURRENT, note=sentence))
+        return ResultRecord(values, note=sentence)
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()
-        row.setContentsMargins(8, 6, 8, 0)
         for name, field, words in (
             ("splits", self.splits, tr("splits")),
             ("repeats", self.repeats, tr("draws from each fit")),
@@ -448,7 +414,6 @@ class EvaluationPanel(QWidget):
         filled = QWidget()
         column = QVBoxLayout(filled)
         column.setContentsMargins(8, 6, 8, 6)
-        column.addWidget(self.assessment)
         column.addWidget(self.ranking, 1)
         column.addWidget(self.notes)
         page = QWidget()

@@ -42,6 +42,7 @@ from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, request_from
 from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
 from regolith_studio.ui.pages.model.views import DistributionsPanel, LiveShape, ShapeGallery
+from regolith_studio.ui.run_controller import RunController
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import in_a_sentence, tr, translate
 from regolith_studio.ui.views.factory import make_view
@@ -187,7 +188,6 @@ DRAWN = N_("A drawn particle")
 POPULATION_LEVEL = 4
 MAX_ADOPTED = 2000
 """Maximum number of drawn particles that are opened, as each becomes a mesh in memory."""
-JUDGE = "judge"
 
 
 class ModelPage(PageWidget):
@@ -218,10 +218,10 @@ class ModelPage(PageWidget):
         self.gallery = ShapeGallery(view)
         self.distributions = DistributionsPanel()
         self.evaluation = EvaluationPanel()
+        self.judging = RunController(self._context, self.evaluation.card, "evaluate", self.evaluate)
         self._place()
         self._connect()
         bindings.refresh("particles", self._show_sources)
-        bindings.refresh("tasks", self._show_tasks, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
 
@@ -375,8 +375,7 @@ class ModelPage(PageWidget):
             "seed": request.seed,
         }
         job = Job(evaluate_models, (sample, None if chosen["all_models"] else (key,)), options)
-        show = self.evaluation.show_evaluated
-        self._context.start(tr("Evaluating models"), job, show, partial=show, queue=JUDGE)
+        self.judging.start(tr("Evaluating models"), job, self.evaluation.show_evaluated)
 
     def _request(self) -> GenerationRequest:
         return request_from(self.source.value(), self.drawing.value(), self._brings())
@@ -396,6 +395,7 @@ class ModelPage(PageWidget):
         self._context.stop("compare")
         self.distributions.show_compared(None)
         self.evaluation.show_evaluated(None)
+        self.judging.forget()
         self._show_state()
         self.drawing.show_names(getattr(model, "names", ()))
         if (sizes := usual_sizes(fitted.source)) is not None:
@@ -474,12 +474,7 @@ class ModelPage(PageWidget):
         known = self.source.value()["source"] != OPEN_PARTICLES or bool(self._context.session.particles)
         self.drawing.set_ready(source=known, drawn=self._drawn is not None)
         missing = tr("Fit a model to a sample of 20 particles or more.")
-        self.evaluation.set_ready("" if self._sample() else missing)
-
-    def _show_tasks(self) -> None:
-        queue = f"{self._context.key}:{JUDGE}"
-        running = next((task for task in self._context.session.tasks if task.queue == queue), None)
-        self.evaluation.show_task(running)
+        self.evaluation.card.set_startable("" if self._sample() else missing)
 
     def _sample(self) -> Sample | None:
         content = self._fitted.source.content if self._fitted else None
@@ -522,5 +517,3 @@ class ModelPage(PageWidget):
         self.live.spectrum.valueChanged.connect(self._edit)
         self.live.reset.clicked.connect(self.live.spectrum.reset)
         self.live.another.clicked.connect(self.another)
-        self.evaluation.startRequested.connect(self.evaluate)
-        self.evaluation.cancelRequested.connect(self._context.session.cancel)

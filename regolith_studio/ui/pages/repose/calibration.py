@@ -1,15 +1,17 @@
 """Panel of a calibration: what is wanted, start and stop, the prediction and the posterior as it narrows."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
-from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, locked_calibration
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import values_in
 from regolith_studio.messages import N_
@@ -20,7 +22,10 @@ from regolith_studio.studies.repose_calibration import (
     angle_target,
     density_target,
 )
-from regolith_studio.ui.pages.repose.controller import Field, RunPanel, count_box, keys_box
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.repose.run_panel import Field, RunPanel, count_box, keys_box
+from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.run_controller import RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.numbers import DecimalField, NumbersLine
@@ -126,6 +131,43 @@ class CalibrationPanel(RunPanel):
         self.prediction.set_curves(_prediction_curves(calibration, self.prediction.theme))
         self.posterior.set_curves(_posterior_curves(calibration, self.posterior.theme))
         self.posterior.set_marker(calibration.next_values[0])
+
+
+class CalibrationController:
+    """Starts and resumes the calibration of a panel; `folder` tells where runs are kept."""
+
+    def __init__(
+        self, context: PageContext, panel: CalibrationPanel, setup: SetupPanel, folder: Callable[[], Path]
+    ) -> None:
+        self._context, self._panel, self._setup, self._folder = context, panel, setup, folder
+        self.run = RunController(
+            context,
+            panel.card,
+            "calibration",
+            self.start,
+            tr("Finished runs are kept, and the button resumes."),
+            tr("A calibration would be stopped; it can be resumed later."),
+            panel.set_running,
+        )
+
+    def start(self) -> None:
+        """Start or resume the calibration."""
+        if self.run.running:
+            return
+        try:
+            request = replace(self._setup.request(), filling=None)
+            wanted = self._panel.request(self._setup.dataset, request)
+        except RegolithError as error:
+            self._context.toast.problem(tr(str(error)))
+            return
+        folder = self._folder() / "studies" / folder_name(wanted)
+        self._panel.show_calibration(None)
+        self.run.start(
+            tr("Angle of repose: calibration"),
+            Job(locked_calibration, (wanted, folder)),
+            self._panel.show_calibration,
+            tr("Every run is kept in {folder}.", folder=folder),
+        )
 
 
 def _number(name: str, accessible: str, low: float, high: float, value: float, unit: str) -> DecimalField:

@@ -1,6 +1,6 @@
 """The heap of the page: the record of its angle for the card, and its sections."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.evaluation.section import NotAPileError
+from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.ui.pages.repose.limits import CaseScale
 from regolith_studio.ui.pages.repose.section_plot import HeapSection, SectionPlot
@@ -95,19 +96,28 @@ def _section_text(heap: HeapSection) -> str:
     return f"{plane}:  {localized(f'{left:.1f}°')} | {localized(f'{right:.1f}°')}"
 
 
-def heap_record(measured: ReposeMeasurement | NotAPileError, made_from: str, made_with: str) -> ResultRecord:
-    """The angle with its interval, or both angles of the flanks of a heap that has no single one."""
+def heap_record(
+    measured: ReposeMeasurement | NotAPileError, made_from: str, made_with: str, notes: Sequence[str] = ()
+) -> ResultRecord:
+    """The angle with its interval, or both angles of the flanks of a heap that has no single one.
+
+    Parameters
+    ----------
+    notes
+        On the run, shown with what is to be known of the angle.
+    """
     if isinstance(measured, ReposeMeasurement):
         low, high = measured.interval
         interval = tr("{low:.1f}° to {high:.1f}°", low=low, high=high)
         values = (localized(f"{measured.angle:.1f}°"), interval)
-        return ResultRecord(values, made_from, made_with, ResultState.CURRENT, angle_text(measured))
+        note = "\n".join((angle_text(measured), *notes))
+        return ResultRecord(values, made_from, made_with, ResultState.CURRENT, note)
     values = ("–", "–")
     if measured.status in ("concave", "convex"):
         top, toe = np.mean([each.end_angles for each in measured.sections], axis=0)
         values = ("–", tr("{top:.0f}° | {toe:.0f}°", top=float(top), toe=float(toe)))
     note = tr("No angle of repose: {reason}", reason=translate(measured.sentence))
-    return ResultRecord(values, made_from, made_with, ResultState.CURRENT, note)
+    return ResultRecord(values, made_from, made_with, ResultState.CURRENT, "\n".join((note, *notes)))
 
 
 def interval_caption(measured: ReposeMeasurement | NotAPileError | None) -> str:
@@ -145,6 +155,12 @@ def run_origin(document: Mapping[str, Any]) -> tuple[str, str]:
         seed=case["seed"],
     )
     return made_from, made_with
+
+
+def run_notes(run: RunSummary) -> tuple[str, ...]:
+    """What the engine and its certificate say of a run."""
+    notes = (run.document.get("run") or {}).get("notes") or ()
+    return tuple(translate(run.message(each)) for each in notes)
 
 
 def scale_of_run(document: Mapping[str, Any]) -> CaseScale:

@@ -2,7 +2,6 @@
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +29,6 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.repose_calibration import locked_calibration
 from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
     ReposeRun,
@@ -38,20 +36,19 @@ from regolith_studio.jobs.repose_jobs import (
     remeasure,
     repose_steps,
 )
-from regolith_studio.jobs.repose_study import SHAPE_KEYS, ReposeStudyRequest, run_repose_study, study_place
 from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
 from regolith_studio.studies.repose import ReposeStudyRun
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.repose.calibration import CalibrationPanel, folder_name
-from regolith_studio.ui.pages.repose.controller import RunController
+from regolith_studio.ui.pages.repose.calibration import CalibrationController, CalibrationPanel
 from regolith_studio.ui.pages.repose.export import export_measurement, read_other
 from regolith_studio.ui.pages.repose.heap import (
     HeapSections,
     heap_record,
     interval_caption,
+    run_notes,
     run_origin,
     scale_of_run,
 )
@@ -59,7 +56,8 @@ from regolith_studio.ui.pages.repose.limits import CaseScale, LimitsStrip
 from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
 from regolith_studio.ui.pages.repose.setup import SetupPanel, engine_table
-from regolith_studio.ui.pages.repose.study import StudyPanel
+from regolith_studio.ui.pages.repose.study import StudyController, StudyPanel
+from regolith_studio.ui.run_controller import RunController
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
@@ -82,6 +80,7 @@ class ReposePage(PageWidget):
         self._measured: ReposeMeasurement | None = None
         self._shown_run: Path | None = None
         self._origin = ("", "")
+        self._notes: tuple[str, ...] = ()
         self._prepared: tuple[PreparedCase, ReposeRequest] | None = None
         self._live_scene: tuple[Sequence[Sequence[FloatArray]], bool, LiftingCylinderTest] | None = None
         self._live_pile: ParticleState | None = None
@@ -100,43 +99,25 @@ class ReposePage(PageWidget):
         self.calibration = CalibrationPanel()
         self._later = QTimer(self, singleShot=True, interval=PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
-        self._make_controllers()
+        self.run = RunController(
+            self._context,
+            self.angle,
+            RUN,
+            self.run_or_build,
+            tr("The run was stopped before it was measured."),
+            tr("A simulation of the angle of repose would be stopped."),
+            lambda _running: self._offer_run(),
+        )
+        self.studies = StudyController(self._context, self.study, self.setup, lambda: self._folder)
+        self.calibrations = CalibrationController(
+            self._context, self.calibration, self.setup, lambda: self._folder
+        )
         self._place()
         self._connect()
         self._show_nothing(tr("Open a dataset, or build one from the open particles."))
         self._context.bindings.refresh("dataset_folder", self._take_dataset)
         self._offer_run()
         self._list_runs()
-
-    def _make_controllers(self) -> None:
-        resumed = tr("Finished runs are kept, and the button resumes.")
-        self.run = RunController(
-            self._context,
-            self.angle,
-            RUN,
-            tr("A simulation of the angle of repose would be stopped."),
-            tr("The run was stopped before it was measured."),
-            self.run_or_build,
-            lambda _running: self._offer_run(),
-        )
-        self.study_run = RunController(
-            self._context,
-            self.study.card,
-            "study",
-            tr("A study of the angle of repose would be stopped; it can be resumed later."),
-            resumed,
-            self.start_study,
-            self.study.set_running,
-        )
-        self.calibration_run = RunController(
-            self._context,
-            self.calibration.card,
-            "calibration",
-            tr("A calibration would be stopped; it can be resumed later."),
-            resumed,
-            self.start_calibration,
-            self.calibration.set_running,
-        )
 
     # --- the page of the window ----------------------------------------------------------------
 
@@ -145,8 +126,8 @@ class ReposePage(PageWidget):
             "open_dataset": self.open_dataset,
             "make_dataset": self.make_dataset,
             "run_test": self.run_test,
-            "start_study": self.start_study,
-            "start_calibration": self.start_calibration,
+            "start_study": self.studies.start,
+            "start_calibration": self.calibrations.start,
             "play": lambda: self.player.play_or_report(self._context.toast.problem),
             "open_positions": self.open_positions,
             "export_run": self.export_run,
@@ -155,7 +136,7 @@ class ReposePage(PageWidget):
         }
 
     def busy(self) -> str:
-        return self.run.busy() or self.study_run.busy() or self.calibration_run.busy()
+        return self.run.busy() or self.studies.run.busy() or self.calibrations.run.busy()
 
     def state(self) -> dict[str, Any]:
         shown = self._shown_run
@@ -258,53 +239,6 @@ class ReposePage(PageWidget):
             self._end_run,
         )
 
-    def start_study(self) -> None:
-        """Start or resume the study."""
-        if self.study_run.running:
-            return
-        try:
-            request = self._study_request()
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        name = "open-particles" if request.dataset is None else request.dataset.name
-        folder = self._studies_folder = self._folder / "studies" / f"{request.key}-{name}"
-        note = tr("Runs, tables and figure are kept in {folder}.", folder=folder)
-        self.study.show_study(None)
-        self.study_run.start(
-            tr("Angle of repose: study"),
-            Job(run_repose_study, (request, folder)),
-            lambda study: replace(self.study.show_study(study), note=note),
-            note,
-        )
-
-    def _study_request(self) -> ReposeStudyRequest:
-        key, values, repeats, workers = self.study.request()
-        session, request = self._context.session, self.setup.request()
-        if key not in SHAPE_KEYS:
-            return ReposeStudyRequest(key, values, request, self.setup.dataset, repeats, workers=workers)
-        particles = tuple(entry.particle for entry in session.particles)
-        coarsening = session.choices.coarsening_request
-        return ReposeStudyRequest(key, values, request, None, repeats, particles, coarsening, workers)
-
-    def start_calibration(self) -> None:
-        """Start or resume the calibration."""
-        if self.calibration_run.running:
-            return
-        try:
-            request = self.calibration.request(self.setup.dataset, self.setup.request())
-        except RegolithError as error:
-            self._context.toast.problem(tr(str(error)))
-            return
-        folder = self._folder / "studies" / folder_name(request)
-        self.calibration.show_calibration(None)
-        self.calibration_run.start(
-            tr("Angle of repose: calibration"),
-            Job(locked_calibration, (request, folder)),
-            self.calibration.show_calibration,
-            tr("Every run is kept in {folder}.", folder=folder),
-        )
-
     def open_positions(self) -> None:
         """Measure the pile of another program from a file of positions."""
         if (read := read_other(self, self._context.toast)) is None:
@@ -313,6 +247,7 @@ class ReposePage(PageWidget):
         self._shown_run = None
         self.runs.select(None)
         self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=path.name), "")
+        self._notes = ()
         self.player.set_scene(((self.player_ball(),),), True, LiftingCylinderTest())
         self.player.show_moment(pile, path.name, tr("{count:,} particles", count=len(pile)))
         self.limits.show_scale(CaseScale(len(pile)))
@@ -388,10 +323,10 @@ class ReposePage(PageWidget):
     def _start_preview(self, dataset: Path, request: ReposeRequest) -> None:
         """Draw the particles of a request: its consequences, and the shapes that a run shows."""
 
-        def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
+        def show(drawn: tuple[PreparedCase, ParticleState, Sequence[str]]) -> None:
             self._show_preview(request, *drawn)
 
-        job = Job(preview_repose, (dataset, request.case))
+        job = Job(preview_repose, (dataset, request.case, request.filling))
         self._context.start(
             tr("Drawing particles"),
             job,
@@ -414,10 +349,12 @@ class ReposePage(PageWidget):
         self.angle.set_start(tr("Run the test") if has_dataset else tr("Use the open particles"))
         self.angle.set_startable(self.setup.problem_of_run() if has_dataset else "")
 
-    def _show_preview(self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState) -> None:
+    def _show_preview(
+        self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState, notes: Sequence[str]
+    ) -> None:
         self._prepared = (prepared, request)
         report = scaling_report(prepared)
-        self.setup.show_consequences([*map(translate, report.sentences)])
+        self.setup.show_consequences([*map(translate, (*notes, *report.sentences))])
         self._offer_run()
         scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
         self._show_limits(CaseScale(len(prepared), report.diameters_across, report.coarse_graining))
@@ -477,11 +414,13 @@ class ReposePage(PageWidget):
 
     def _list_runs(self, chosen: Path | None = None) -> None:
         self._context.session.runs_folder = self._folder
-        self.runs.set_runs(find_runs(self._folder) if self._folder.is_dir() else [], chosen)
+        runs = find_runs(self._folder) if self._folder.is_dir() else []
+        self.runs.set_runs(runs, chosen)
+        self.setup.set_fillings([run.folder for run in runs if run.document["state"] == "finished"])
 
     def _show_study_run(self, run: ReposeStudyRun) -> None:
         if not self.run.running:
-            self._show_run(RunSummary(study_place(self._studies_folder, run.folder), run.document))
+            self._show_run(self.studies.summary(run))
 
     def _show_run(self, run: RunSummary) -> None:
         case = run.document["case"]
@@ -498,7 +437,7 @@ class ReposePage(PageWidget):
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
-        self._origin = run_origin(run.document)
+        self._origin, self._notes = run_origin(run.document), run_notes(run)
         if pile is not None:
             self._measure(pile)
         else:
@@ -529,7 +468,7 @@ class ReposePage(PageWidget):
             return
         self._measured = measured if isinstance(measured, ReposeMeasurement) else None
         self.angle.caption(1, interval_caption(measured))
-        self._show_card(heap_record(measured, *self._origin))
+        self._show_card(heap_record(measured, *self._origin, self._notes))
         self.sections.show_heap(self._pile, measured)
 
     def _show_nothing(self, sentence: str, state: ResultState = ResultState.NONE) -> None:

@@ -145,10 +145,11 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
 
 
 def explanation(run: RunSummary) -> str:
-    """Why there is no angle, and the problems of the checks."""
+    """Why there is no angle, the problems of the checks, and what is to be known of the engine."""
     measurement = run.document.get("measurement") or {}
     checks = run.document.get("checks") or {}
-    problems = [run.document.get("problem"), measurement.get("reason"), *checks.get("problems", ())]
+    notes = (run.document.get("run") or {}).get("notes") or ()
+    problems = [run.document.get("problem"), measurement.get("reason"), *checks.get("problems", ()), *notes]
     return "\n".join(translate(run.message(each)) for each in problems if each)
 
 

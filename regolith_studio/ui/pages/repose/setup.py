@@ -1,6 +1,6 @@
 """Set-up of a simulation: dataset, number of particles, Tables 1 and 2, engines, evaluation."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -81,6 +81,10 @@ class SetupPanel(QWidget):
             "repose_gravity_of",
             tr("Gravity of"),
         )
+        self.filling = _choice({N_("new"): ""}, "repose_filling", tr("Filling"))
+        self.filling.setToolTip(
+            tr("An earlier run of the same particles in the same cylinder, whose filling is lifted again")
+        )
         self.test = PresetForm(LiftingCylinderTest, "test", tr("Published cylinder"))
         self.contact = PresetForm(ContactParameters, "contact", tr("Published contact parameters"))
         self.evaluation = SettingsForm(EvaluationSettings)
@@ -108,6 +112,16 @@ class SetupPanel(QWidget):
         self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
         self.valueChanged.emit()
 
+    def set_fillings(self, folders: Sequence[Path]) -> None:
+        """Offer the fillings of other runs; the chosen one stays if it is among them."""
+        chosen = self.filling.currentData()
+        with QSignalBlocker(self.filling):
+            while self.filling.count() > 1:
+                self.filling.removeItem(1)
+            for folder in folders:
+                self.filling.addItem(tr("of {run}", run=folder.name), str(folder))
+            self.filling.setCurrentIndex(max(0, self.filling.findData(chosen)))
+
     def request(self) -> ReposeRequest:
         """The request with the values of the panel.
 
@@ -126,7 +140,9 @@ class SetupPanel(QWidget):
             seed=self.seed.value(),
         )
         settings = engine.Settings(**self.numerics.value())
-        return ReposeRequest(case, engine.key, settings, self.evaluation_settings(), threads=cores())
+        filling = Path(name) if (name := self.filling.currentData()) else None
+        evaluation = self.evaluation_settings()
+        return ReposeRequest(case, engine.key, settings, evaluation, threads=cores(), filling=filling)
 
     def evaluation_settings(self) -> EvaluationSettings:
         """The settings of the evaluation.
@@ -204,6 +220,7 @@ class SetupPanel(QWidget):
         form.addRow(tr("Cohesion"), self.cohesion)
         form.addRow(tr("Engine"), self.engine)
         form.addRow(tr("Gravity of"), self.gravity)
+        form.addRow(tr("Filling"), self.filling)
         case = _column(
             heading(tr("Dataset")),
             self.dataset_label,
@@ -236,6 +253,7 @@ class SetupPanel(QWidget):
             self.shapes.currentIndexChanged,
             self.cohesion.currentIndexChanged,
             self.engine.currentIndexChanged,
+            self.filling.currentIndexChanged,
             self.test.valueChanged,
             self.contact.valueChanged,
             *(each.valueChanged for each in self._numerics.values()),

@@ -1,6 +1,7 @@
 """Panel of a study: varied parameter, start and stop, and a plot that is updated after every run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,23 @@ from PySide6.QtCore import Signal
 
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dem.run_io import RunSummary
-from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
+from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.repose_study import (
+    SHAPE_KEYS,
+    ReposeStudyRequest,
+    run_repose_study,
+    study_place,
+    values_in,
+)
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
-from regolith_studio.ui.pages.repose.controller import Field, RunPanel, count_box, keys_box
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.repose.run_panel import Field, RunPanel, count_box, keys_box
 from regolith_studio.ui.pages.repose.runs import explanation, interval_bars
+from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.run_controller import RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count
 from regolith_studio.ui.widgets.numbers import NumbersLine
@@ -137,6 +149,58 @@ class StudyPanel(RunPanel):
     def _announce(self, row: int) -> None:
         if self._study is not None and row < len(self._study.runs):
             self.chosen.emit(self._study.runs[row])
+
+
+class StudyController:
+    """Starts and resumes the study of a panel; `folder` tells where runs are kept."""
+
+    def __init__(
+        self, context: PageContext, panel: StudyPanel, setup: SetupPanel, folder: Callable[[], Path]
+    ) -> None:
+        self._context, self._panel, self._setup, self._folder = context, panel, setup, folder
+        self._place = folder()
+        self.run = RunController(
+            context,
+            panel.card,
+            "study",
+            self.start,
+            tr("Finished runs are kept, and the button resumes."),
+            tr("A study of the angle of repose would be stopped; it can be resumed later."),
+            panel.set_running,
+        )
+
+    def start(self) -> None:
+        """Start or resume the study."""
+        if self.run.running:
+            return
+        try:
+            request = self._request()
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        name = "open-particles" if request.dataset is None else request.dataset.name
+        folder = self._place = self._folder() / "studies" / f"{request.key}-{name}"
+        note = tr("Runs, tables and figure are kept in {folder}.", folder=folder)
+        self._panel.show_study(None)
+        self.run.start(
+            tr("Angle of repose: study"),
+            Job(run_repose_study, (request, folder)),
+            lambda study: replace(self._panel.show_study(study), note=note),
+            note,
+        )
+
+    def summary(self, run: ReposeStudyRun) -> RunSummary:
+        """A run of the study with its folder."""
+        return RunSummary(study_place(self._place, run.folder), run.document)
+
+    def _request(self) -> ReposeStudyRequest:
+        key, values, repeats, workers = self._panel.request()
+        session, request = self._context.session, replace(self._setup.request(), filling=None)
+        if key not in SHAPE_KEYS:
+            return ReposeStudyRequest(key, values, request, self._setup.dataset, repeats, workers=workers)
+        particles = tuple(entry.particle for entry in session.particles)
+        coarsening = session.choices.coarsening_request
+        return ReposeStudyRequest(key, values, request, None, repeats, particles, coarsening, workers)
 
 
 def _columns(points: list[tuple[float, float]]) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -31,7 +31,7 @@ from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, translated_health
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 from regolith_studio.ui.theme import current_theme
-from regolith_studio.ui.translation import rich, tr, with_decimal_point
+from regolith_studio.ui.translation import rich, tr, translate, with_decimal_point
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -86,13 +86,16 @@ class SamplePage(PageWidget):
         }
 
     def state(self) -> dict[str, Any]:
-        return {"filter": self.filter.text(), "axes": list(self.scatter.axes())}
+        axes, statistics = list(self.scatter.axes()), self.statistics.choices()
+        return {"filter": self.filter.text(), "axes": axes, "statistics": statistics}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         self.filter.setText(str(state.get("filter", "")))
         axes = state.get("axes")
         if isinstance(axes, list) and len(axes) == 2:
             self.scatter.set_axes(str(axes[0]), str(axes[1]))
+        if isinstance(statistics := state.get("statistics"), Mapping):
+            self.statistics.choose(statistics)
 
     def on_close(self) -> None:
         self.frame.view.release()
@@ -132,12 +135,14 @@ class SamplePage(PageWidget):
         for widget in (self.title, self.filter, FixedHeightText((self.assessment,), 1)):
             column.addWidget(widget)
         self.reports = tabs(
-            "sample_tabs", [(self.health, tr("Health of the mesh")), (self.statistics, tr("Statistics"))]
+            "sample_tabs", [(self.statistics, tr("Statistics")), (self.health, tr("Health of the mesh"))]
         )
         parts = stacked([self.table, self.reports], [490, 300], stretch=0)
         parts.setObjectName("sample_rows")
         column.addWidget(parts, 1)
-        right = equal_parts(Qt.Orientation.Vertical, [self.frame, self.scatter])
+        plots = [(self.statistics.distribution, tr("Distribution")), (self.scatter, tr("Scatter plot"))]
+        self.plots = tabs("sample_plots", plots)
+        right = equal_parts(Qt.Orientation.Vertical, [self.frame, self.plots])
         right.setObjectName("sample_pictures")
         right.setContentsMargins(2, 10, 10, 8)
         columns = side_by_side([left, right], [1150, 600], stretch=0)
@@ -150,18 +155,24 @@ class SamplePage(PageWidget):
         self.filter.textChanged.connect(self._filter)
         self.table.chosenChanged.connect(lambda _ids: self._show_pictures())
         self.table.currentChosen.connect(self._select)
+        self.table.horizontalHeader().sectionClicked.connect(self._show_column)
         self.table.doubleClicked.connect(lambda _index: self._context.go("explore"))
         self.scatter.pointChosen.connect(self._choose_point)
         self.health.showChanged.connect(lambda _on: self._draw_faults())
+
+    def _show_column(self, column: int) -> None:
+        """Show the distribution of the column that was clicked."""
+        self.statistics.choose({"key": self.table.particles.columns[column].key})
 
     def _filter(self, text: str) -> None:
         try:
             keeps = filter_of(in_english(with_decimal_point(text))) if text.strip() else None
         except RegolithError as error:
-            self.assessment.setText(str(error))
+            self.assessment.setText(tr("{problem} All particles are shown.", problem=translate(str(error))))
+            keeps = None
             self.assessment.show()
-            return
-        self.assessment.hide()
+        else:
+            self.assessment.hide()
         self.table.set_filter(keeps)
         self._count()
 

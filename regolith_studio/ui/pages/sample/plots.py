@@ -1,6 +1,6 @@
 """Plots of the sample: two descriptors against each other, and their distributions."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,18 +21,20 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.distributions import THRESHOLD, WEIGHTINGS
+from regolith_studio.descriptors.distributions import THRESHOLD, WEIGHTINGS, Distribution
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.session.sample_table import has_weights, statistics_table
+from regolith_studio.session.sample_table import has_weights, statistics_distribution, statistics_table
 from regolith_studio.ui.layout import control_row
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.labels import rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.table import FontRowHeight, definition
 
 ZINGG = ("flatness", "elongation")
@@ -213,17 +215,29 @@ _SHORT = {
     "standard deviation": N_("std. dev."),
 }
 QUANTILE = " quantile"
+MIN_BINS, MAX_BINS = 8, 40
+"""Numbers of bins of a histogram, twice the root of the number of particles in between."""
 GROUPS = (N_("all"), N_("(no group)"))
 """Group names that are translated."""
 
 
 class StatisticsPanel(QWidget):
-    """A table with a row per group."""
+    """Mean and median on a card above a table with a row per group; `distribution` is placed elsewhere.
+
+    Attributes
+    ----------
+    distribution
+        The choices of the statistics above a histogram and the cumulative distribution.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("statistics")
         self._entries: tuple[ParticleEntry, ...] = ()
+        self.card = ResultView("statistics_result", (tr("Mean"), tr("Median")), lines=2)
+        self.plot = CurvePlot(
+            "", tr("Share [%]"), tr("The distribution appears when particles are measured.")
+        )
         self.key = QComboBox()
         self.key.setObjectName("statistics_key")
         self.key.setAccessibleName(tr("Descriptor of the statistics"))
@@ -253,11 +267,17 @@ class StatisticsPanel(QWidget):
         self.table.verticalHeader().hide()
         FontRowHeight(self.table, 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        choices = (QLabel(tr("Statistics of")), self.key, self.weighting)
+        self.table.setFrameShape(self.table.Shape.NoFrame)
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(control_row(*choices, self.border))
+        layout.setContentsMargins(8, 8, 8, 4)
+        layout.addWidget(self.card)
         layout.addWidget(self.table, 1)
+        self.distribution = QWidget()
+        column = QVBoxLayout(self.distribution)
+        column.setContentsMargins(8, 6, 8, 0)
+        column.addWidget(control_row(self.key, self.weighting))
+        column.addWidget(self.border)
+        column.addWidget(self.plot, 1)
         self.key.currentIndexChanged.connect(lambda _at: self._fill())
         self.weighting.currentIndexChanged.connect(lambda _at: self._fill())
         self.border.toggled.connect(lambda _on: self._fill())
@@ -268,13 +288,74 @@ class StatisticsPanel(QWidget):
         self.border.setVisible(has_weights(entries))
         self._fill()
 
+    def choices(self) -> dict[str, Any]:
+        """Descriptor, weighting, and whether grains at the border are corrected for, as plain JSON."""
+        return {
+            "key": self.key.currentData(),
+            "weighting": self.weighting.currentData(),
+            "border": self.border.isChecked(),
+        }
+
+    def choose(self, choices: Mapping[str, Any]) -> None:
+        """Take other :meth:`choices`; unknown ones are ignored."""
+        for name, box in (("key", self.key), ("weighting", self.weighting)):
+            if (place := box.findData(choices.get(name))) >= 0:
+                box.setCurrentIndex(place)
+        self.border.setChecked(bool(choices.get("border", self.border.isChecked())))
+
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
+        """Take the colours of a theme."""
+        self._fill()
+
     def value(self) -> Table:
         """The statistics."""
-        return statistics_table(
-            self._entries, self.key.currentData(), self.weighting.currentData(), self.border.isChecked()
+        return statistics_table(self._entries, *self.choices().values())
+
+    def _draw(self, spread: Distribution | None) -> None:
+        """Draw the histogram and, in steps, the cumulative distribution."""
+        if spread is None:
+            self.plot.set_curves([])
+            return
+        bins = int(np.clip(np.sqrt(len(spread.values)) * 2, MIN_BINS, MAX_BINS))
+        shares, edges = spread.histogram(bins)
+        theme, values = self.plot.theme, spread.values.tolist()
+        outline = np.concatenate([[0.0], np.repeat(100 * shares, 2), [0.0]]).tolist()
+        cumulated = 100 * np.cumsum(spread.weights)
+        steps = np.concatenate([[0.0], np.repeat(cumulated, 2)[:-1]]).tolist()
+        self.plot.set_labels(_axis_label(str(self.key.currentData())), tr("Share [%]"))
+        self.plot.set_curves(
+            [
+                PlotCurve(
+                    tr("histogram"), theme.particle, tuple(np.repeat(edges, 2).tolist()), tuple(outline)
+                ),
+                PlotCurve(tr("cumulative"), theme.fit, tuple(np.repeat(values, 2).tolist()), tuple(steps)),
+            ]
         )
 
+    def _record(self, spread: Distribution | None) -> ResultRecord:
+        known = 0 if spread is None else len(spread.values)
+        waiting = sum(entry.descriptors is None for entry in self._entries)
+        made_from = tr_count(N_("1 particle"), N_("{count} particles"), known)
+        if waiting:
+            made_from = tr("{count} of {total} particles measured", count=known, total=len(self._entries))
+        words = [self.key.currentText(), self.weighting.currentText()]
+        if self.border.isVisibleTo(self.distribution) and self.border.isChecked():
+            words.append(tr("corrected for grains at the border"))
+        state = ResultState.RUNNING if waiting else ResultState.CURRENT
+        if spread is None:
+            return ResultRecord(
+                (), made_from if waiting else "", state=state if waiting else ResultState.NONE
+            )
+        unit = CATALOGUE[str(self.key.currentData())].unit_suffix
+        values = tuple(short_number(each) for each in (spread.mean, float(spread.quantile(0.5))))
+        for place, caption in enumerate((tr("Mean"), tr("Median"))):
+            self.card.caption(place, caption + unit)
+        return ResultRecord(values, made_from, ", ".join(words), state)
+
     def _fill(self) -> None:
+        spread = statistics_distribution(self._entries, *self.choices().values())
+        self._draw(spread)
+        self.card.show_record(self._record(spread))
         shown = self.value()
         self.table.setColumnCount(len(shown.columns))
         self.table.setRowCount(len(shown.rows))

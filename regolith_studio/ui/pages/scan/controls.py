@@ -192,6 +192,8 @@ class SegmentationControls(QWidget):
             part.setEnabled(kind == "grey")
         if kind == "grey":
             self._show_which()
+        else:
+            self.show_heights(())
 
     def _show_level(self, level: float) -> None:
         with QSignalBlocker(self.level):
@@ -214,7 +216,7 @@ class SegmentationControls(QWidget):
         least = int(self.least.value())
         self.diameter.setText(
             tr(
-                "{least} voxels are a ball of {diameter:.1f} voxels in diameter.",
+                "{least} voxels = sphere of {diameter:.1f} voxels in diameter",
                 least=least,
                 diameter=voxel_diameter(least),
             )

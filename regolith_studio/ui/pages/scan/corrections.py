@@ -92,7 +92,7 @@ class Corrections(QObject):
     ) -> None:
         super().__init__(parent)
         self._context, self._objects, self._edits, self._slices = context, objects, edits, slices
-        self._history: History[CorrectionState] = History(CorrectionState())
+        self.history: History[CorrectionState] = History(CorrectionState())
         self._clicks: tuple[Voxel, ...] = ()
         self._repaired: LabelEdit | None = None
         self._grey: Volume | None = None
@@ -106,17 +106,7 @@ class Corrections(QObject):
     @property
     def state(self) -> CorrectionState:
         """Examples and edits so far."""
-        return self._history.value
-
-    @property
-    def can_undo(self) -> bool:
-        """Whether there is a step to take back."""
-        return self._history.can_undo
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is a step to take again."""
-        return self._history.can_redo
+        return self.history.value
 
     @property
     def grains(self) -> Segmentation | None:
@@ -132,7 +122,7 @@ class Corrections(QObject):
     def take_from(self, settings: SegmentationSettings) -> None:
         """Begin with the object step and the edits of a recipe."""
         objects = settings.objects
-        self._history.restart(
+        self.history.restart(
             CorrectionState(
                 (),
                 objects,
@@ -148,7 +138,7 @@ class Corrections(QObject):
         """Begin again with nothing, for another volume."""
         self.discard()
         self.classified = None
-        self._history.restart(CorrectionState())
+        self.history.restart(CorrectionState())
         self._refresh()
 
     def begin(self, grey: Volume, base: GrainSegmentation, settings: SegmentationSettings) -> None:
@@ -178,13 +168,14 @@ class Corrections(QObject):
     def undo(self) -> None:
         """Take the last step back."""
         self._clicks, self._repaired = (), None
-        self._history.undo()
+        self._edits.show_hint()
+        self.history.undo()
         self._refresh()
 
     def redo(self) -> None:
         """Take it again."""
         self._repaired = None
-        self._history.redo()
+        self.history.redo()
         self._refresh()
 
     def load(self, training: ObjectTraining) -> None:
@@ -208,7 +199,7 @@ class Corrections(QObject):
 
     def _push(self, state: CorrectionState) -> None:
         self._repaired = None
-        self._history.push(state)
+        self.history.push(state)
         self._refresh()
 
     def _refresh(self) -> None:
@@ -260,7 +251,7 @@ class Corrections(QObject):
     def _on_failed(self, failure: Failed) -> None:
         """Say what cannot be done, and go back to where it could."""
         self._context.toast.problem(failure.sentence)
-        if self._history.can_undo:
+        if self.history.can_undo:
             self.undo()
         else:
             self._push(replace(self.state, applied=False, edits=()))
@@ -287,9 +278,10 @@ class Corrections(QObject):
             self._clicks = (*self._clicks, place)
             if len(self._clicks) == needed:
                 clicks, self._clicks = self._clicks, ()
+                self._edits.show_hint()
                 self._edit(self._edits.tool, clicks, axis)
             else:
-                self._edits.hint.setText(tr("Now click the second place."))
+                self._edits.show_hint(tr("Now click the second place."))
                 self._slices.highlight({int(self.grains.labels.array[place])})
 
     def _same_object(self, one: Voxel, other: Voxel) -> bool:
@@ -392,14 +384,14 @@ class Corrections(QObject):
         found, state = self._base is not None, self.state
         trained = self._training() is not None
         self._objects.set_state(
-            found=found, trained=trained, applied=state.applied, can_undo=self._history.can_undo
+            found=found, trained=trained, applied=state.applied, can_undo=self.history.can_undo
         )
         self._objects.set_actions(state.actions)
         classified = self.classified
         known = classified is not None and classified.training is not None and self._table is not None
         counts = classified.counts() if known and classified is not None else {}
         self._objects.set_counts(counts, translate(classified.missing) if classified is not None else "")
-        self._edits.set_state(found=found, can_undo=self._history.can_undo, can_redo=self._history.can_redo)
+        self._edits.set_state(found=found, can_undo=self.history.can_undo, can_redo=self.history.can_redo)
         self._edits.set_edits(state.edits)
 
     def _connect(self) -> None:

@@ -10,9 +10,11 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.imaging.label_table import voxel_inside
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.imaging.volume import Box, Volume
+from regolith_studio.jobs.classifier_jobs import find_suspects
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.jobs.scan_jobs import (
@@ -32,6 +34,7 @@ from regolith_studio.ui.pages.scan.painting import Painting
 from regolith_studio.ui.pages.scan.slices import SlicesView
 from regolith_studio.ui.pages.scan.tools import Brush, BrushPanel, EditsPanel, ObjectsPanel
 from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
+from regolith_studio.ui.run_controller import RunController
 from regolith_studio.ui.translation import tr
 
 DELAY = 120
@@ -141,6 +144,7 @@ class ScanPage(PageWidget):
         self._found_with: SegmentationSettings | None = None
         self._restored: Path | None = None
         self._find_again = False
+        self._suspected: Segmentation | None = None
 
     def build(self) -> None:
         context = self._context
@@ -148,10 +152,12 @@ class ScanPage(PageWidget):
         self.controls = SegmentationControls()
         self.workflow = WorkflowPanel()
         self.brush, self.objects, self.edits = BrushPanel(), ObjectsPanel(), EditsPanel()
+        self.suspects = self.edits.suspects
         self.opening = VolumeOpening(context, self.controls, self)
         self.preview = FramePreview(context, self.controls, self.slices, self)
         self.painting = Painting(context, self.brush, self.slices, self)
         self.corrections = Corrections(context, self.objects, self.edits, self.slices, self)
+        self.finding = RunController(context, self.workflow.card, "grains", self.find_grains)
         self.making = ParticleMaking(context, self.opening, self)
         self.files = SettingsFiles(
             context, self.controls, self.painting, self.corrections, self.opening, self
@@ -219,13 +225,11 @@ class ScanPage(PageWidget):
         self.preview.stop()
         settings = self.controls.value().segmentation
         job = Job(find_grains, (self.scan, settings))
-        self._context.start(
+        self.finding.start(
             tr("Finding grains"),
             job,
             lambda found: self._show_grains(found, settings),
-            failed=self._find_nothing,
-            stopped=self._schedule_preview,
-            queue="grains",
+            ended=self._schedule_preview,
         )
 
     def save_settings(self) -> None:
@@ -300,7 +304,7 @@ class ScanPage(PageWidget):
             return
         self.corrections.discard()
         self._context.stop("surface")
-        self._context.stop("grains")
+        self.finding.forget()
         self._show_level()
         self._schedule_preview()
 
@@ -310,6 +314,7 @@ class ScanPage(PageWidget):
 
     def _on_corrected(self) -> None:
         """Follow the grains as they are corrected."""
+        self._find_suspects()
         if self._found_with is not None:
             self._hide_probabilities(self._found_with)
         self._show_state()
@@ -322,15 +327,32 @@ class ScanPage(PageWidget):
         self.controls.show_automatic_level(found.segmentation.level)
         self._show_state()
 
-    def _find_nothing(self, failure: Failed) -> None:
-        self._context.toast.problem(failure.sentence, failure.details)
-        self._schedule_preview()
+    def _find_suspects(self) -> None:
+        """List the grains that are least like the others, while the tab of corrections is seen."""
+        scan, grains = self.scan, self.grains
+        seen = self.tabs.currentWidget() is self.edits
+        if grains is not self._suspected:
+            self._suspected = None
+            self._context.stop("suspects")
+            self.suspects.clear()
+        if not seen or scan is None or grains is None or grains is self._suspected:
+            return
+        self._suspected = grains
+        job = Job(find_suspects, (scan.volume, grains))
+        show = self.suspects.show_objects
+        self._context.start(tr("Describing objects"), job, show, queue="suspects", repeats=True)
+
+    def _show_grain(self, label: int, box: Box) -> None:
+        """Move the slices to a grain, and let it stand out."""
+        if self.grains is not None:
+            self.slices.go_to(voxel_inside(self.grains.labels.array, label, box))
+            self.slices.highlight({label})
 
     def _make_surface(self, labels: Volume) -> None:
         """Contour labels in the background for the view of all grains."""
         show = self.slices.show_surface
         job = Job(view_labels, (labels,))
-        self._context.start(tr("Drawing grains"), job, lambda made: show(labels, made), queue="surface")
+        self._context.start(tr("Drawing grains"), job, lambda made: show(labels, *made), queue="surface")
 
     def _schedule_preview(self) -> None:
         if self.grains is None:
@@ -345,7 +367,8 @@ class ScanPage(PageWidget):
 
     def _stop_work(self) -> None:
         self.preview.stop()
-        for queue in ("grains", "surface"):
+        self.finding.forget()
+        for queue in ("surface", "suspects"):
             self._context.stop(queue)
 
     # --- the level in the histogram ------------------------------------------------------------
@@ -412,6 +435,8 @@ class ScanPage(PageWidget):
         self.making.made.connect(self.workflow.set_particles)
         self.files.settingsOpened.connect(self._use)
         self.tabs.currentChanged.connect(self._stop_tools)
+        self.tabs.currentChanged.connect(self._find_suspects)
+        self.suspects.grainChosen.connect(self._show_grain)
         self.slices.boxMoved.connect(self._schedule_preview)
         self.slices.surfaceWanted.connect(self._make_surface)
         self.slices.strokeDrawn.connect(self.opening.crop_to_box)
@@ -427,7 +452,6 @@ class ScanPage(PageWidget):
         self.objects.saveRequested.connect(self.files.save_objects)
         self.workflow.openRequested.connect(self.opening.ask_for_file)
         self.workflow.sampleRequested.connect(self.opening.open_sample)
-        self.workflow.findRequested.connect(self.find_grains)
         self.workflow.labelsRequested.connect(self.save_labels)
         self.workflow.particlesRequested.connect(self.make_particles)
         self.workflow.showRequested.connect(lambda: self._context.go("sample"))
@@ -459,9 +483,9 @@ class ScanPage(PageWidget):
             steps = self.corrections
         elif not self.brush.paint.isChecked():
             return None
-        if event.matches(QKeySequence.StandardKey.Undo) and steps.can_undo:
+        if event.matches(QKeySequence.StandardKey.Undo) and steps.history.can_undo:
             return steps.undo
-        if event.matches(QKeySequence.StandardKey.Redo) and steps.can_redo:
+        if event.matches(QKeySequence.StandardKey.Redo) and steps.history.can_redo:
             return steps.redo
         return None
 

@@ -38,7 +38,7 @@ class Painting(QObject):
     def __init__(self, context: PageContext, panel: BrushPanel, slices: SlicesView, parent: QObject) -> None:
         super().__init__(parent)
         self._context, self._panel, self._slices = context, panel, slices
-        self._history: History[Strokes] = History(())
+        self.history: History[Strokes] = History(())
         self._volume: Volume | None = None
         self._vectors: Vectors = {}
         self.training: TrainingSet | None = None
@@ -53,21 +53,11 @@ class Painting(QObject):
     @property
     def strokes(self) -> Strokes:
         """All strokes so far."""
-        return self._history.value
-
-    @property
-    def can_undo(self) -> bool:
-        """Whether there is a stroke to take back."""
-        return self._history.can_undo
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether there is a stroke to draw again."""
-        return self._history.can_redo
+        return self.history.value
 
     def set_volume(self, volume: Volume | None) -> None:
         """Begin again on another volume of grey values, or with nothing on labels or without a volume."""
-        self._history.restart(())
+        self.history.restart(())
         self._volume = volume if volume is not None and volume.kind == "grey" else None
         self._vectors, self.training = {}, None
         self._panel.setEnabled(self._volume is not None)
@@ -76,12 +66,12 @@ class Painting(QObject):
 
     def undo(self) -> None:
         """Take the last stroke back."""
-        self._history.undo()
+        self.history.undo()
         self._learn()
 
     def redo(self) -> None:
         """Draw it again."""
-        self._history.redo()
+        self.history.redo()
         self._learn()
 
     def read_labels(self, path: Path, region: RegionSettings) -> None:
@@ -120,7 +110,7 @@ class Painting(QObject):
             self._push((*self.strokes, stroke))
 
     def _push(self, strokes: Strokes) -> None:
-        self._history.push(strokes)
+        self.history.push(strokes)
         self._learn()
 
     def _retrain(self) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QWheelEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
@@ -18,7 +18,11 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 
 AXES = "xyz"
+ZOOM = 1.25
+"""Factor of one notch of the wheel with Ctrl."""
 _OPACITY = 105
+_TONES = ((0.75, 1.0), (0.45, 1.0), (0.95, 0.8), (0.6, 0.65))
+"""Saturation and value in turn: labels that are a Fibonacci number apart have about the same hue."""
 
 
 @cache
@@ -26,8 +30,9 @@ def label_colours() -> NDArray[np.uint8]:
     """RGBA colours of 255 labels with distant hues, shape (256, 4); entry 0 is transparent."""
     hues = (np.arange(255) * 0.618033988749895) % 1.0
     table = np.zeros((256, 4), dtype=np.uint8)
-    for row, hue in zip(table[1:], hues, strict=True):
-        row[:] = QColor.fromHsvF(float(hue), 0.75, 1.0, _OPACITY / 255).getRgb()
+    for number, (row, hue) in enumerate(zip(table[1:], hues, strict=True)):
+        saturation, value = _TONES[number % len(_TONES)]
+        row[:] = QColor.fromHsvF(float(hue), saturation, value, _OPACITY / 255).getRgb()
     return table
 
 
@@ -37,7 +42,7 @@ def colours_of_labels(labels: NDArray[np.int64]) -> NDArray[np.uint8]:
 
 
 class SliceView(QWidget):
-    """Shows the slice of one direction; a click selects a voxel, the wheel another slice.
+    """Shows the slice of one direction; a click selects a voxel, the wheel another slice; Ctrl zooms.
 
     Parameters
     ----------
@@ -49,6 +54,8 @@ class SliceView(QWidget):
     """A voxel that was clicked."""
     sliceChosen = Signal(int, int)  # noqa: N815
     """Axis and number of another slice."""
+    hovered = Signal(object)
+    """The voxel under the mouse, ``None`` where it has left the slice."""
     strokeDrawn = Signal(int, int, object)  # noqa: N815
     """Axis and number of the slice, and the corners of the line across it in voxels, shape (n, 2)."""
 
@@ -78,7 +85,7 @@ class SliceView(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        self.canvas.setBackground(theme.base)
+        self.canvas.setBackground(theme.window)
         self._frame.setPen(pg.mkPen(theme.accent, width=2))
         for line in self._cross:
             line.setPen(pg.mkPen(QColor(theme.accent).lighter(120), width=1, style=Qt.PenStyle.DotLine))
@@ -210,7 +217,10 @@ class SliceView(QWidget):
         number = labels.astype(np.int64)
         if self._class_colours is not None:
             return self._class_colours[np.clip(number, 0, len(self._class_colours) - 1)]
-        return colours_of_labels(number)
+        colours = colours_of_labels(number)
+        if self._volume is not None and self._volume.kind == "labels":  # on no grey values
+            colours[number > 0, 3] = 255
+        return colours
 
     def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], size: tuple[int, int]) -> None:
         """Set an image that covers so many voxels, which may have fewer pixels."""
@@ -240,14 +250,28 @@ class SliceView(QWidget):
 
     def picked(self, point: QPointF) -> None:
         """Select the voxel at a point of the scene in micrometres."""
-        if self._volume is None:
+        if self._volume is not None:
+            position = self._voxel_at(point)
+            ends = (each - 1 for each in self._volume.shape)
+            self.placePicked.emit(*(min(max(at, 0), end) for at, end in zip(position, ends, strict=True)))
+
+    def hover(self, point: QPointF | None) -> None:
+        """Tell the voxel under the mouse."""
+        if self._volume is None or point is None:
+            self.hovered.emit(None)
             return
+        position = self._voxel_at(point)
+        inside = all(0 <= at < edge for at, edge in zip(position, self._volume.shape, strict=True))
+        self.hovered.emit(position if inside else None)
+
+    def _voxel_at(self, point: QPointF) -> tuple[int, int, int]:
+        """The voxel at a point of the scene in micrometres, maybe outside."""
+        assert self._volume is not None
         position = [0, 0, 0]
         position[self.axis] = self.slider.value()
         for each, where in ((self.across, point.x()), (self.down, point.y())):
-            voxel = int(np.floor(where / self._volume.voxel_size[each]))
-            position[each] = min(max(voxel, 0), self._volume.shape[each] - 1)
-        self.placePicked.emit(*position)
+            position[each] = int(np.floor(where / self._volume.voxel_size[each]))
+        return position[0], position[1], position[2]
 
     def turn(self, steps: int) -> None:
         """Go some slices forward or back."""
@@ -267,6 +291,12 @@ class _Canvas(pg.GraphicsView):  # type: ignore[misc]
         self.scene().sigMouseClicked.connect(self._clicked)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
+        if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            place = self.view.mapSceneToView(self.mapToScene(event.position().toPoint()))
+            factor = ZOOM if event.angleDelta().y() < 0 else 1 / ZOOM
+            self.view.scaleBy((factor, factor), center=place)
+            event.accept()
+            return
         self._owner.turn(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
 
@@ -281,7 +311,12 @@ class _Canvas(pg.GraphicsView):  # type: ignore[misc]
             self._owner.extend_stroke(self._point(event))
             event.accept()
             return
+        self._owner.hover(self._point(event))
         super().mouseMoveEvent(event)
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self._owner.hover(None)
+        super().leaveEvent(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         if self._owner.is_drawing:

@@ -1,6 +1,6 @@
 """The slices of a scan, their grey levels and grains, and what is painted on them."""
 
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 
 import numpy as np
 import pyqtgraph as pg
@@ -28,7 +28,7 @@ from regolith_studio.ui.translation import number_text, tr, tr_count
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.labels import hint_label
+from regolith_studio.ui.widgets.labels import ElidedLabel, grouped_number, hint_label
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 from regolith_studio.ui.widgets.plots.curves import plain_decades
 
@@ -133,7 +133,7 @@ class HistogramPlot(Plot):
         """Histograms with their colours and names."""
         known = [
             (self._scanned, self.theme.particle, tr("as scanned")),
-            (self._denoised, self.theme.fit, tr("without noise")),
+            (self._denoised, self.theme.fit, tr("denoised")),
         ]
         return [(seen, colour, label) for seen, colour, label in known if seen is not None]
 
@@ -267,13 +267,14 @@ class SlicesView(QWidget):
         self.views = [SliceView(axis) for axis in (2, 1, 0)]
         self.histogram = HistogramPlot()
         self.grains = GrainsView(views)
-        self._surface: tuple[Volume, LabelSurface] | None = None
+        self._surface: tuple[Volume, LabelSurface, Mapping[int, int]] | None = None
         self._class_colours: NDArray[np.uint8] | None = None
         self._highlighted: set[int] = set()
         self.position = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
         self._labels: SliceImages | None = None
+        self._found: Segmentation | None = None
         self._part: Box = self.box
         self._predicted: dict[int, SlicePrediction] = {}
         self._overlay = "probability"
@@ -283,12 +284,14 @@ class SlicesView(QWidget):
         for view in self.views:
             view.placePicked.connect(lambda x, y, z: self.go_to((x, y, z)))
             view.placePicked.connect(lambda x, y, z, axis=view.axis: self.picked.emit(x, y, z, axis))
+            view.hovered.connect(self._tell)
             view.sliceChosen.connect(self._turn)
             view.strokeDrawn.connect(self.strokeDrawn)
 
     def set_scan(self, scan: Scan) -> None:
         """Show another volume, with slices through its centre."""
-        self._scan, self._labels = scan, None
+        self._scan, self._labels, self._found = scan, None, None
+        self.readout.setText("")
         for view in self.views:
             view.set_volume(scan.volume, scan.sections, scan.contrast)
         self._show_boxes(scan.volume.kind == "grey")
@@ -325,6 +328,7 @@ class SlicesView(QWidget):
 
     def show_preview(self, found: Segmentation | None, box: Box) -> None:
         """Overlay the grains of the preview."""
+        self._found = found
         self._labels = None if found is None else SliceImages(found.labels.array)
         for view in self.views:
             view.set_class_colours(None)
@@ -340,7 +344,7 @@ class SlicesView(QWidget):
         """Overlay the grains of the whole volume, in colours as of :meth:`SliceView.set_class_colours`."""
         for view in self.views:
             view.set_class_colours(colours)
-        self._class_colours = colours
+        self._class_colours, self._found = colours, found
         if self._surface is not None and self._surface[0] is found.labels:
             self.show_surface(*self._surface)
         else:
@@ -351,9 +355,15 @@ class SlicesView(QWidget):
         self._show_boxes(False)
         self._lay_over()
 
-    def show_surface(self, labels: Volume, surface: LabelSurface) -> None:
-        """Show the surfaces of labels in three dimensions, in the colours of the slices."""
-        self._surface = labels, surface
+    def show_surface(self, labels: Volume, surface: LabelSurface, sizes: Mapping[int, int]) -> None:
+        """Show the surfaces of labels in three dimensions, in the colours of the slices.
+
+        Parameters
+        ----------
+        sizes
+            Voxels of each label, told of the one under the mouse.
+        """
+        self._surface = labels, surface, sizes
         highest = int(surface.labels.max(initial=0))
         colours = self._class_colours
         if colours is None:
@@ -420,6 +430,40 @@ class SlicesView(QWidget):
             size = self._scan.volume.shape[view.across], self._scan.volume.shape[view.down]
             view.show_paint(paint_picture(positions[here][:, [view.across, view.down]], labels[here], size))
 
+    def _tell(self, position: tuple[int, int, int] | None) -> None:
+        """Tell place, grey value and grain of the voxel under the mouse, counted from 1."""
+        if self._scan is None or position is None:
+            self.readout.setText("")
+            return
+        parts = [", ".join(f"{axis} = {at + 1}" for axis, at in zip("xyz", position, strict=True))]
+        value = self._scan.volume.array[position]
+        if self._scan.volume.kind == "grey":
+            parts.append(tr("grey value {value:.4g}", value=float(value)))
+        if label := self._label_at(position):
+            parts.append(self._grain_text(label))
+        self.readout.setText("    ".join(parts))
+
+    def _label_at(self, position: tuple[int, int, int]) -> int:
+        """Label of the grain that is shown there; 0 for none."""
+        if self._scan is not None and self._scan.volume.kind == "labels":
+            return int(self._scan.volume.array[position])
+        if self._found is None:
+            return 0
+        places = [at - side.start for at, side in zip(position, self._part, strict=True)]
+        inside = all(0 <= at < edge for at, edge in zip(places, self._found.labels.shape, strict=True))
+        return max(0, int(self._found.labels.array[tuple(places)])) if inside else 0
+
+    def _grain_text(self, label: int) -> str:
+        count = self._surface[2].get(label) if self._surface is not None else None
+        if count is None or self._scan is None:
+            return tr("grain {label}", label=label)
+        return tr(
+            "grain {label}: {count:,} voxels, {volume} µm³",
+            label=label,
+            count=count,
+            volume=grouped_number(count * float(np.prod(self._scan.volume.voxel_size))),
+        )
+
     def _turn(self, axis: int, number: int) -> None:
         position = list(self.position)
         position[axis] = number
@@ -432,8 +476,16 @@ class SlicesView(QWidget):
 
     def _arrange(self) -> None:
         above = equal_parts(Qt.Orientation.Horizontal, self.views)
+        self.readout = ElidedLabel(role="hint")
+        self.readout.setObjectName("scan_readout")
+        slices = QWidget()
+        column = QVBoxLayout(slices)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        column.addWidget(above, 1)
+        column.addWidget(self.readout)
         below = equal_parts(Qt.Orientation.Horizontal, [self.histogram, self.grains.frame])
-        page = equal_parts(Qt.Orientation.Vertical, [above, below])
+        page = equal_parts(Qt.Orientation.Vertical, [slices, below])
         hint = QWidget()
         column_of_words = QVBoxLayout(hint)
         words = hint_label(

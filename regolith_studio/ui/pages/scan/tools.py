@@ -26,15 +26,17 @@ from regolith_studio.imaging.segmentation.object_classifier import (
     OBJECT_ACTIONS,
     OBJECT_CLASSES,
     ObjectAction,
+    SuspectObject,
 )
 from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.controls import choice
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
+from regolith_studio.ui.widgets.text_table import TextTable
 
 CLASSES = (
     PixelClass("background", False),
@@ -66,22 +68,63 @@ class Brush:
     shape: Literal["free", "line", "box"] = "free"
 
 
-class BrushPanel(QWidget):
+class TrainingPanel(QWidget):
+    """The buttons of a classifier that is trained by examples, and what it lacks."""
+
+    undoRequested = Signal()  # noqa: N815
+    clearRequested = Signal()  # noqa: N815
+    openRequested = Signal()  # noqa: N815
+    saveRequested = Signal()  # noqa: N815
+
+    def __init__(self, name: str, undo: tuple[str, str], tips: tuple[str, str, str]) -> None:
+        super().__init__()
+        self.setObjectName(name)
+        self.undo = button(f"{name}_undo", *undo)
+        self.clear, self.browse, self.save = (
+            button(f"{name}_{key}", words, tip)
+            for key, words, tip in zip(
+                ("clear", "open", "save"), (tr("Clear"), tr("Open …"), tr("Save …")), tips, strict=True
+            )
+        )
+        self.state = hint_label()
+        self.undo.clicked.connect(self.undoRequested)
+        self.clear.clicked.connect(self.clearRequested)
+        self.browse.clicked.connect(self.openRequested)
+        self.save.clicked.connect(self.saveRequested)
+
+    def show_missing(self, words: str) -> None:
+        """Say what is missing for a classifier, or nothing."""
+        self.state.setText(words)
+        self.state.setVisible(bool(words))
+
+
+def _add_rows(layout: QVBoxLayout, rows: Sequence[Sequence[QWidget]]) -> None:
+    for parts in rows:
+        row = QHBoxLayout()
+        for part in parts:
+            row.addWidget(part)
+        layout.addLayout(row)
+
+
+class BrushPanel(TrainingPanel):
     """Chooses the brush and the overlay. ``paintingChanged`` is emitted when painting begins or ends."""
 
     paintingChanged = Signal(bool)  # noqa: N815
     overlayChanged = Signal(str)  # noqa: N815
     featuresChanged = Signal()  # noqa: N815
-    undoRequested = Signal()  # noqa: N815
-    clearRequested = Signal()  # noqa: N815
     useRequested = Signal()  # noqa: N815
     labelsRequested = Signal()  # noqa: N815
-    openRequested = Signal()  # noqa: N815
-    saveRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("brush")
+        super().__init__(
+            "brush",
+            (tr("Undo stroke"), tr("Undo the last stroke (Ctrl+Z)")),
+            (
+                tr("Undo all strokes"),
+                tr("Open a classifier and use it for the grains"),
+                tr("Save the classifier for other scans"),
+            ),
+        )
         self.paint = QCheckBox(tr("Paint examples"))
         self.paint.setObjectName("brush_paint")
         self.paint.setToolTip(tr("Strokes in the slices train a classifier of voxels."))
@@ -105,8 +148,6 @@ class BrushPanel(QWidget):
         self.planar.setObjectName("brush_planar")
         self.planar.setToolTip(tr("For slices that lie far apart: what is above and below does not count."))
         self._features, self._missing = FeatureSettings(), ""
-        self.undo = button("brush_undo", tr("Undo stroke"), tr("Undo the last stroke (Ctrl+Z)"))
-        self.clear = button("brush_clear", tr("Clear"), tr("Undo all strokes"))
         self.use = button(
             "brush_use",
             tr("Use for the grains"),
@@ -119,9 +160,6 @@ class BrushPanel(QWidget):
                 "Read what was painted in another program, such as ilastik or napari, from a volume of labels"
             ),
         )
-        self.browse = button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
-        self.save = button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))
-        self.state = hint_label()
         for number, colour in enumerate(CLASS_COLOURS):
             self.kind.setItemIcon(number, swatch(colour))
         self.kind.setCurrentIndex(1)
@@ -147,12 +185,12 @@ class BrushPanel(QWidget):
             sigmas = tuple(float(each) for each in self.sigmas.value().split(","))
             features = FeatureSettings(sigmas, self.planar.isChecked())
         except ValueError:
-            self._show_words(tr("Widths are numbers of voxels, such as {example}.", example="1, 2, 4, 8"))
+            self.show_missing(tr("Widths are numbers of voxels, such as {example}.", example="1, 2, 4, 8"))
             return
         except InputError as error:
-            self._show_words(str(error))
+            self.show_missing(str(error))
             return
-        self._show_words(self._missing)
+        self.show_missing(self._missing)
         if features != self._features:
             self._features = features
             self.featuresChanged.emit()
@@ -164,11 +202,7 @@ class BrushPanel(QWidget):
         self.use.setEnabled(trained)
         self.save.setEnabled(trained)
         self._missing = missing
-        self._show_words(missing)
-
-    def _show_words(self, words: str) -> None:
-        self.state.setText(words)
-        self.state.setVisible(bool(words))
+        self.show_missing(missing)
 
     def _enable(self) -> None:
         for part in (self.kind, self.eraser, self.diameter, self.overlay):
@@ -181,15 +215,8 @@ class BrushPanel(QWidget):
         self.sigmas.editingFinished.connect(self._take_features)
         self.planar.toggled.connect(self._take_features)
         self.kind.currentIndexChanged.connect(lambda: self.eraser.setChecked(False))
-        for part, signal in (
-            (self.undo, self.undoRequested),
-            (self.clear, self.clearRequested),
-            (self.use, self.useRequested),
-            (self.labels, self.labelsRequested),
-            (self.browse, self.openRequested),
-            (self.save, self.saveRequested),
-        ):
-            part.clicked.connect(signal)
+        self.use.clicked.connect(self.useRequested)
+        self.labels.clicked.connect(self.labelsRequested)
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)
@@ -206,11 +233,7 @@ class BrushPanel(QWidget):
             (self.use, self.labels),
             (self.browse, self.save),
         )
-        for parts in rows:
-            row = QHBoxLayout()
-            for part in parts:
-                row.addWidget(part)
-            layout.addLayout(row)
+        _add_rows(layout, rows)
         layout.addWidget(self.state)
         layout.addStretch(1)
 
@@ -236,20 +259,23 @@ _PLURALS = (N_("Grains"), N_("Several grains"), N_("Artefacts"))
 _ACTION_NAMES = (N_("Keep"), N_("Split again"), N_("Drop"))
 
 
-class ObjectsPanel(QWidget):
+class ObjectsPanel(TrainingPanel):
     """Chooses the class of a click and the actions. ``markingChanged`` tells when clicks begin to mark."""
 
     markingChanged = Signal(bool)  # noqa: N815
     actionsChanged = Signal()  # noqa: N815
     applyChanged = Signal(bool)  # noqa: N815
-    undoRequested = Signal()  # noqa: N815
-    clearRequested = Signal()  # noqa: N815
-    openRequested = Signal()  # noqa: N815
-    saveRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("objects")
+        super().__init__(
+            "objects",
+            (tr("Undo"), tr("Undo the last step (Ctrl+Z)")),
+            (
+                tr("Remove all examples"),
+                tr("Open an object classifier and apply it"),
+                tr("Save the object classifier for other scans"),
+            ),
+        )
         self.mark = QCheckBox(tr("Mark examples"))
         self.mark.setObjectName("objects_mark")
         self.mark.setToolTip(
@@ -270,11 +296,6 @@ class ObjectsPanel(QWidget):
         self.apply = QCheckBox(tr("Apply to the grains"))
         self.apply.setObjectName("objects_apply")
         self.apply.setToolTip(tr("Keep, split or drop the grains by their class"))
-        self.undo = button("objects_undo", tr("Undo"), tr("Undo the last step (Ctrl+Z)"))
-        self.clear = button("objects_clear", tr("Clear"), tr("Remove all examples"))
-        self.browse = button("objects_open", tr("Open …"), tr("Open an object classifier and apply it"))
-        self.save = button("objects_save", tr("Save …"), tr("Save the object classifier for other scans"))
-        self.state = hint_label()
         self._arrange()
         self._connect()
         self.set_state(found=False, trained=False, applied=False, can_undo=False)
@@ -306,8 +327,7 @@ class ObjectsPanel(QWidget):
         for words, name, label in zip(_PLURALS, OBJECT_CLASSES, self.counts, strict=True):
             count = counts.get(name)
             label.setText(tr(words) if count is None else f"{tr(words)}: {count}")
-        self.state.setText(missing)
-        self.state.setVisible(bool(missing))
+        self.show_missing(missing)
 
     def _connect(self) -> None:
         self.mark.toggled.connect(self.kind.setEnabled)
@@ -315,13 +335,6 @@ class ObjectsPanel(QWidget):
         self.apply.toggled.connect(self.applyChanged)
         for box in self.action_boxes:
             box.currentIndexChanged.connect(self.actionsChanged)
-        for part, signal in (
-            (self.undo, self.undoRequested),
-            (self.clear, self.clearRequested),
-            (self.browse, self.openRequested),
-            (self.save, self.saveRequested),
-        ):
-            part.clicked.connect(signal)
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)
@@ -336,17 +349,17 @@ class ObjectsPanel(QWidget):
             form.addRow(label, box)
         layout.addLayout(form)
         layout.addWidget(self.apply)
-        for parts in ((self.undo, self.clear), (self.browse, self.save)):
-            row = QHBoxLayout()
-            for part in parts:
-                row.addWidget(part)
-            layout.addLayout(row)
+        _add_rows(layout, ((self.undo, self.clear), (self.browse, self.save)))
         layout.addStretch(1)
 
 
 NO_TOOL = ""
 TOOLS = (
-    (NO_TOOL, N_("Inspect"), N_("A click shows the slices through a voxel.")),
+    (
+        NO_TOOL,
+        N_("Inspect"),
+        N_("Click to move the slices."),
+    ),
     ("merge", N_("Merge"), N_("Click two grains that are one.")),
     ("delete", N_("Delete"), N_("Click a grain.")),
     ("seeds", N_("Split by seeds"), N_("Click two places in a grain that are two grains.")),
@@ -375,6 +388,47 @@ _DONE = {
 }
 
 
+_REASONS = (N_("concave"), N_("size"))
+SUSPECT_HEADINGS = (N_("Grain"), N_("Voxels"), N_("Solidity"), N_("Unusual"))
+
+
+class SuspectsTable(TextTable):
+    """Grains unlike the others, the most unusual first; a chosen one is shown in the slices."""
+
+    grainChosen = Signal(int, object)  # noqa: N815
+    """Its label and its box."""
+
+    def __init__(self) -> None:
+        super().__init__("scan_suspects", tr("Suspect grains"), [tr(each) for each in SUSPECT_HEADINGS])
+        self.setMinimumHeight(120)
+        self.setToolTip(
+            tr("Grains whose solidity (volume over that of the convex hull) is low or whose size is unusual")
+        )
+        self._objects: tuple[SuspectObject, ...] = ()
+        self.chosen.connect(
+            lambda row: self.grainChosen.emit(self._objects[row].label, self._objects[row].box)
+        )
+
+    def show_objects(self, objects: Sequence[SuspectObject]) -> None:
+        """List other grains."""
+        self._objects = tuple(objects)
+        rows = [
+            (
+                str(each.label),
+                number_text(each.n_voxels, ","),
+                number_text(each.solidity, ".3f"),
+                tr(_REASONS[each.by_size]),
+            )
+            for each in objects
+        ]
+        tip = tr("Choose it to see it in the slices.")
+        self.set_rows(rows, [tip] * len(rows))
+
+    def clear(self) -> None:
+        """List none."""
+        self.show_objects(())
+
+
 class EditsPanel(QWidget):
     """Chooses the tool; ``toolChanged`` tells its kind."""
 
@@ -400,7 +454,8 @@ class EditsPanel(QWidget):
         self.hint = hint_label()
         self.list = QListWidget()
         self.list.setAccessibleName(tr("Corrections so far"))
-        self.list.setMinimumHeight(120)
+        self.list.setMinimumHeight(80)
+        self.suspects = SuspectsTable()
         self.undo = button("edit_undo", tr("Undo"), tr("Undo the last step (Ctrl+Z)"))
         self.redo = button("edit_redo", tr("Redo"), tr("Redo the last step (Ctrl+Shift+Z)"))
         self._arrange()
@@ -428,13 +483,17 @@ class EditsPanel(QWidget):
         """List the corrections."""
         self.list.clear()
         for number, edit in enumerate(edits, start=1):
-            place = ", ".join(str(at) for at in edit.points[0])
+            place = ", ".join(str(at + 1) for at in edit.points[0])
             self.list.addItem(tr(_DONE[edit.kind], number=number, place=place))
         self.list.scrollToBottom()
 
+    def show_hint(self, words: str = "") -> None:
+        """Say what to do next; without words, what the tool does."""
+        self.hint.setText(words or next(tr(tip) for kind, _, tip in TOOLS if kind == self.tool))
+
     def _chosen(self, on: bool) -> None:
         if on:
-            self.hint.setText(next(tr(tip) for kind, _, tip in TOOLS if kind == self.tool))
+            self.show_hint()
             self.toolChanged.emit(self.tool)
 
     def _arrange(self) -> None:
@@ -448,7 +507,6 @@ class EditsPanel(QWidget):
         layout.addWidget(self.diameter)
         layout.addWidget(self.hint)
         layout.addWidget(self.list, 1)
-        row = QHBoxLayout()
-        row.addWidget(self.undo)
-        row.addWidget(self.redo)
-        layout.addLayout(row)
+        _add_rows(layout, ((self.undo, self.redo),))
+        layout.addWidget(heading(tr("Suspect grains")))
+        layout.addWidget(self.suspects, 1)

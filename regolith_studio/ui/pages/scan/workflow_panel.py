@@ -10,6 +10,7 @@ from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.tools import button
 from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import FixedHeightText, WrappedLabel, heading
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 _DENSEST, _LARGEST = 0.7, 0.4
 """Plausible limits of the volume fraction of all grains, and of a single grain."""
@@ -20,7 +21,6 @@ class WorkflowPanel(QWidget):
 
     openRequested = Signal()  # noqa: N815
     sampleRequested = Signal()  # noqa: N815
-    findRequested = Signal()  # noqa: N815
     labelsRequested = Signal()  # noqa: N815
     particlesRequested = Signal()  # noqa: N815
     showRequested = Signal()  # noqa: N815
@@ -34,9 +34,9 @@ class WorkflowPanel(QWidget):
         self.sample = button(
             "scan_sample", tr("Sample scan"), tr("Open the scan that ships with the program")
         )
-        self.search = button(
-            "scan_find", tr("Find all grains"), tr("Segment the whole volume with these settings")
-        )
+        captions = (tr("Grains"), tr("Share of the volume"))
+        self.card = ResultView("scan_grains", captions, tr("Find all grains"), tr("Find again"), lines=4)
+        self.search, self.found = self.card.button, self.card.sentence
         self.save = button(
             "scan_save_labels",
             tr("Save labels …"),
@@ -46,26 +46,29 @@ class WorkflowPanel(QWidget):
             "scan_make", tr("Make particles"), tr("Contour each grain and open it as a particle")
         )
         self.show_them = button("scan_show", tr("Show particles"), tr("Go to the table of particles"))
-        self.volume, self.found, self.made = _words(), _words(), _words()
+        self.volume, self.made = _words(), _words()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         kept = self.show_them.sizePolicy()
         kept.setRetainSizeWhenHidden(True)  # the button beside it stays as wide
         self.show_them.setSizePolicy(kept)
-        for title, buttons, words in (
-            (tr("1  Volume"), (self.browse, self.sample), self.volume),
-            (tr("2  Grains"), (self.search, self.save), self.found),
-            (tr("3  Particles"), (self.convert, self.show_them), self.made),
+        for title, buttons, result in (
+            (tr("1  Volume"), (self.browse, self.sample), FixedHeightText((self.volume,))),
+            (tr("2  Grains"), (self.save,), self.card),
+            (tr("3  Particles"), (self.convert, self.show_them), FixedHeightText((self.made,))),
         ):
             layout.addWidget(heading(title))
             row = QHBoxLayout()
             for each in buttons:
                 row.addWidget(each)
-            layout.addLayout(row)
-            layout.addWidget(FixedHeightText((words,)))
+            if result is self.card:
+                layout.addWidget(result)
+                layout.addLayout(row)
+            else:
+                layout.addLayout(row)
+                layout.addWidget(result)
         self.browse.clicked.connect(self.openRequested)
         self.sample.clicked.connect(self.sampleRequested)
-        self.search.clicked.connect(self.findRequested)
         self.save.clicked.connect(self.labelsRequested)
         self.convert.clicked.connect(self.particlesRequested)
         self.show_them.clicked.connect(self.showRequested)
@@ -83,7 +86,7 @@ class WorkflowPanel(QWidget):
         `searching` says that a preview is being computed.
         """
         is_grey = scan is not None and scan.volume.kind == "grey"
-        self.search.setEnabled(is_grey)
+        self.card.set_startable("" if is_grey else tr("Open a volume of grey values first."))
         self.save.setEnabled(grains is not None)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
         self.show_them.hide()
@@ -92,36 +95,43 @@ class WorkflowPanel(QWidget):
             _sentences(_about(scan.volume.name, scan.volume), outside) if scan else tr("No volume is open.")
         )
         self.made.setText("")
-        if scan is None:
-            self.found.setText("")
-        elif not is_grey:
-            self.found.setText(tr("The volume holds labels: its grains have been found already."))
-        elif grains is not None:
-            self.found.setText(_sentences(translate(grains.summary), *_doubts(grains, least)))
-        elif preview is not None:
-            self.found.setText(
-                _sentences(
-                    tr("In the frame: {counts}.", counts=translate(preview.counts)),
-                    *_doubts(preview, least),
-                    tr("Click into a slice to move the frame."),
-                )
-            )
-        elif searching:
-            self.found.setText(tr("Searching …"))
-        else:
-            self.found.setText(
-                tr("No grain in the frame so far. Move the level, or click into a slice to move the frame.")
-            )
+        if self.card.record.state not in (ResultState.RUNNING, ResultState.FAILED):
+            self.card.show_record(_record(scan, preview, grains, least, searching))
 
     def show_first(self, first: FirstLook) -> None:
         """Describe a volume of which a coarse picture is shown until it has been read."""
         self.volume.setText(_about(first.scan.volume.name, first))
-        self.found.setText(tr("The picture is coarse until all of the volume has been read."))
+        note = tr("The picture is coarse until all of the volume has been read.")
+        self.card.show_record(ResultRecord(note=note))
 
     def set_particles(self, summary: str) -> None:
         """Show the result of the extraction."""
         self.made.setText(summary)
         self.show_them.show()
+
+
+def _record(
+    scan: Scan | None, preview: Segmentation | None, grains: Segmentation | None, least: int, searching: bool
+) -> ResultRecord:
+    """All grains, or what the preview says of those in its frame."""
+    if scan is None:
+        return ResultRecord()
+    if scan.volume.kind == "labels":
+        return ResultRecord(note=tr("The volume holds labels: its grains have been found already."))
+    if grains is not None:
+        share = float(grains.sizes.sum()) / grains.labels.array.size
+        values = (number_text(grains.n_grains, ","), number_text(share, ".1%"))
+        note = _sentences(translate(grains.summary), *_doubts(grains, least))
+        return ResultRecord(values, scan.volume.name, state=ResultState.CURRENT, note=note)
+    if preview is not None:
+        found = tr("In the frame: {counts}.", counts=translate(preview.counts))
+        hint = tr("Click into a slice to move the frame.")
+        return ResultRecord(note=_sentences(found, *_doubts(preview, least), hint))
+    if searching:
+        return ResultRecord(note=tr("Searching …"))
+    return ResultRecord(
+        note=tr("No grain in the frame so far. Move the level, or click into a slice to move the frame.")
+    )
 
 
 def _sentences(*parts: str) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt, QTimer
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -12,23 +12,29 @@ from PySide6.QtWidgets import (
     QStyleOptionViewItem,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.study_jobs import GalleryCell
 from regolith_studio.messages import N_
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.studies.coarsening import CoarseningStudy
+from regolith_studio.studies.loss_variants import LossVariant
+from regolith_studio.ui.pages.studies.plots import coarsening_record, study_card, study_panel
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr
 from regolith_studio.ui.widgets.heat_table import centred_hint
-from regolith_studio.ui.widgets.study_frame import StudyFrame
-from regolith_studio.ui.widgets.thumbnails import thumbnail
+from regolith_studio.ui.widgets.result_view import ResultRecord
+from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail, thumbnail
 
 SIZE = 120
 FONT_SIZE = 22
 """Pixels below a picture."""
-WAITING = N_("The polyhedra of six particles, one row per loss function.")
+WAITING = N_(
+    "Six particles from the selected one on, and below them their polyhedra, one row per loss function."
+)
 Index = QModelIndex | QPersistentModelIndex
 MAX_PARTICLES = 6
 """Maximum number of columns."""
@@ -41,7 +47,11 @@ class GalleryPanel(QWidget):
         super().__init__()
         self.setObjectName("solid_gallery")
         self._cells: tuple[GalleryCell, ...] = ()
-        self._colour = current_theme().polyhedron
+        self._particles: tuple[ParticleEntry, ...] = ()
+        self._theme = current_theme()
+        self._painting: tuple[int, Painting] | None = None
+        self._timer = QTimer(self, interval=0)
+        self._timer.timeout.connect(self._paint_on)
         self.table = QTableWidget()
         self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -59,38 +69,76 @@ class GalleryPanel(QWidget):
         self._stack = QStackedLayout(self._parts)
         self._stack.addWidget(centred_hint(tr(WAITING)))
         self._stack.addWidget(self.table)
-        self.frame = StudyFrame("solids", self._parts)
-        self.frame.set_hint(tr("for the particle on screen and those after it, one row per loss function"))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.frame, 1)
+        self.card = study_card("solids", tr("Polyhedra"))
+        study_panel(self, self.card, self._parts)
 
-    def begin(self, names: Sequence[str], labels: Sequence[str]) -> None:
-        """Show empty cells for these particles and losses."""
-        self._cells = ()
+    def clear(self) -> None:
+        """Show that there are no polyhedra."""
+        self._cells, self._particles = (), ()
+        self._timer.stop()
+        self._stack.setCurrentIndex(0)
+
+    def begin(self, particles: Sequence[ParticleEntry], labels: Sequence[str]) -> None:
+        """Show particles, and below them empty cells for each loss."""
+        self._cells, self._particles = (), tuple(particles)
         self._stack.setCurrentWidget(self.table)
         self.table.clear()
-        self.table.setRowCount(len(labels))
-        self.table.setColumnCount(len(names))
-        self.table.setVerticalHeaderLabels(list(labels))
-        self.table.setHorizontalHeaderLabels(list(names))
+        self.table.setRowCount(1 + len(labels))
+        self.table.setColumnCount(len(particles))
+        self.table.setVerticalHeaderLabels([tr("Particle"), *labels])
+        self.table.setHorizontalHeaderLabels([entry.id for entry in particles])
+        self._paint_particles()
 
     def show_cells(self, cells: Sequence[GalleryCell]) -> None:
         """Fill the cells of new polyhedra."""
         for cell in cells[len(self._cells) :]:
-            self.table.setItem(cell.row, cell.column, self._cell(cell))
+            self.table.setItem(cell.row + 1, cell.column, self._cell(cell))
         self._cells = tuple(cells)
 
     def value(self) -> tuple[GalleryCell, ...]:
         """The polyhedra that are shown."""
         return self._cells
 
+    @property
+    def total(self) -> int:
+        """How many there will be."""
+        return len(self._particles) * (self.table.rowCount() - 1)
+
+    def record(self, choices: Choices, rows: Sequence[LossVariant]) -> ResultRecord:
+        """How many polyhedra there are, and what they were made from and with."""
+        study = CoarseningStudy(tuple(rows), tuple(entry.id for entry in self._particles))
+        return coarsening_record(study, choices, (f"{len(self._cells)} / {self.total}",))
+
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        if theme.polyhedron != self._colour:
-            self._colour = theme.polyhedron
+        if theme != self._theme:
+            self._theme = theme
             for cell in self._cells:
-                self.table.setItem(cell.row, cell.column, self._cell(cell))
+                self.table.setItem(cell.row + 1, cell.column, self._cell(cell))
+            self._paint_particles()
+
+    def _paint_particles(self) -> None:
+        """Begin to paint the first row, in steps, as particles may have many triangles."""
+        self._painting = None
+        self._waiting = list(range(len(self._particles)))
+        self._timer.start()
+
+    def _paint_on(self) -> None:
+        if self._painting is None:
+            if not self._waiting:
+                self._timer.stop()
+                return
+            column = self._waiting.pop(0)
+            mesh = self._particles[column].particle.mesh
+            self._painting = column, paint_thumbnail(mesh, self._theme.particle, SIZE)
+        column, painting = self._painting
+        try:
+            next(painting)
+        except StopIteration as end:
+            item = QTableWidgetItem()
+            item.setIcon(QIcon(end.value))
+            self.table.setItem(0, column, item)
+            self._painting = None
 
     def _cell(self, cell: GalleryCell) -> QTableWidgetItem:
         found = cell.outcome.coarsened
@@ -100,7 +148,7 @@ class GalleryPanel(QWidget):
             item.setText("–")
             item.setToolTip(inert(cell.outcome.problem or ""))
             return item
-        item.setIcon(QIcon(thumbnail(found.mesh, self._colour, SIZE)))
+        item.setIcon(QIcon(thumbnail(found.mesh, self._theme.polyhedron, SIZE)))
         item.setText(f"J {number_text(found.jaccard_distance, '.1%')}")
         worst = "\n".join(
             f"{tr(CATALOGUE[key].label)}: {number_text(error, '.2%')}" for key, error in found.errors.items()

@@ -1,37 +1,35 @@
-"""Page "Studies": Fig. 3, Fig. 8 with further sweeps of the coarsening, and Fig. 7."""
+"""Page "Studies": Fig. 8 with further sweeps of the coarsening, Fig. 3, and Fig. 7."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QSizePolicy, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.study_jobs import coarsen_gallery, study_coarsening, study_of_cells
+from regolith_studio.jobs.study_jobs import GalleryCell, coarsen_gallery, study_coarsening, study_of_cells
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import STUDIES as KINDS
 from regolith_studio.session.choices import Choices, Kind, depends
 from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import COMPOUND, chosen_rows, varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
+from regolith_studio.studies.loss_variants import LossVariant
 from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.layout import (
-    padded,
-    scrolled_column,
-    side_by_side,
-    stacked,
-    tabs,
-)
+from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.studies.gallery import MAX_PARTICLES, GalleryPanel
 from regolith_studio.ui.pages.studies.plots import CoarseningStudyPanel, LmaxStudyPanel
 from regolith_studio.ui.pages.studies.sweep import LossSelector, SweepPanel
-from regolith_studio.ui.translation import tr, tr_count, translate
-from regolith_studio.ui.widgets.labels import heading
+from regolith_studio.ui.run_controller import RunController
+from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState
+
+NO_PARTICLE = N_("No particle is open; open a mesh first.")
 
 
 class SweepController:
@@ -49,13 +47,13 @@ class SweepController:
         self._context, self._session, self._panels, self._bar = context, context.session, panels, bar
         self._results: dict[str, CoarseningStudy] = {}
         self._made: dict[str, Choices] = {}
-        self._shown: dict[str, object] = {}
-        self._ids: tuple[str, ...] = ()
+        self.runs = {
+            key: RunController(context, panel.card, key, partial(self.start, key))
+            for key, panel in panels.items()
+        }
         for key, panel in panels.items():
-            panel.startRequested.connect(partial(self.start, key))
-            panel.frame.cancelRequested.connect(self._session.cancel)
-        context.bindings.refresh("particles", self._follow_particles)
-        context.bindings.refresh("tasks choices", self._refresh, slow=True)
+            panel.values.returnPressed.connect(partial(self.start, key))
+        context.bindings.refresh("choices", self._mark_outdated, slow=True)
 
     @property
     def results(self) -> Mapping[str, CoarseningStudy]:
@@ -79,46 +77,35 @@ class SweepController:
                 self._context.toast.problem(str(error))
             return
         if not particles:
-            self._context.toast.problem(tr("No particle is open; open a mesh first."))
+            self._context.toast.problem(tr(NO_PARTICLE))
             return
         title = SWEEPS[key].title
         options = {"rows": rows, "box_metric": self._bar.box.value(), "title": title}
         job = Job(study_coarsening, (particles, choices.coarsening_request), options)
         self._made[key] = choices
-        take = partial(self._take, key)
-        self._context.start(title, job, partial(self._end, key), partial=take, queue=key)
+        self.runs[key].start(title, job, partial(self._show, key))
 
-    def _take(self, key: str, study: CoarseningStudy) -> None:
-        """Keep a partial result, which is drawn at the next refresh."""
+    def forget(self) -> None:
+        """Stop all, and clear what was made from particles that are open no more."""
+        self._results.clear()
+        for key, run in self.runs.items():
+            run.forget()
+            self._panels[key].show_study(None)
+
+    def _show(self, key: str, study: CoarseningStudy) -> ResultRecord | None:
+        if not study.names:
+            return None
         self._results[key] = study
+        self._panels[key].show_study(study)
+        return self._panels[key].record(study, self._made[key])
 
-    def _end(self, key: str, study: CoarseningStudy) -> None:
-        self._take(key, study)
-        self._refresh()
-
-    def _follow_particles(self) -> None:
-        entries = self._session.particles
-        for panel in self._panels.values():
-            panel.frame.set_count(len(entries))
-        ids = tuple(entry.id for entry in entries)
-        if ids != self._ids:
-            self._ids = ids
-            for key in self._panels:
-                self._context.stop(key)
-            self._results.clear()
-            self._refresh()
-
-    def _refresh(self) -> None:
-        self._bar.show_facets(self._session.choices)
+    def _mark_outdated(self) -> None:
+        choices = self._session.choices
+        self._bar.show_facets(choices)
         for key, panel in self._panels.items():
-            queue = f"{self._context.key}:{key}"
-            panel.frame.show_task(next((task for task in self._session.tasks if task.queue == queue), None))
-            panel.show_method(self._session.choices.method)
-            study = self._results.get(key)
-            state = (study, study is not None and self._is_outdated(key))
-            if state != self._shown.get(key):
-                self._shown[key] = state
-                panel.show_study(*state)
+            panel.show_method(choices.method)
+            if key in self._results:
+                self.runs[key].set_outdated(self._is_outdated(key))
 
     def _is_outdated(self, key: str) -> bool:
         made, now = self._made[key], self._session.choices
@@ -127,44 +114,51 @@ class SweepController:
         return made.weights != now.weights or depends(Kind.COARSENING_STUDY, made, now)
 
 
-LMAX_TITLE = N_("Error against l<sub>max</sub> (Fig. 3)")
-BAR_WIDTH = 200
-"""Initial width of the choices in pixels."""
-COARSENING_TITLE = N_("Error of coarsened particles")
-TABS = {"facets": N_("Facets"), "tradeoff": N_("Overlap or descriptors"), "sensitivity": N_("Weights")}
-"""Object names and titles of the tabs after that of Fig. 8."""
+TABS = (
+    N_("Losses (Fig. 8)"),
+    N_("Facets"),
+    N_("Overlap or descriptors"),
+    N_("Weights"),
+    N_("Degree (Fig. 3)"),
+    N_("Polyhedra (Fig. 7)"),
+)
 
 
 class StudiesPage(PageWidget):
-    """Studies of l_max and of the coarsening, and the gallery of polyhedra."""
+    """Studies of the coarsening and of l_max, and the gallery of polyhedra."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
         self.setObjectName("studies")
         self._context, self._session = context, context.session
-        self._drawn: tuple[list[str], list[str]] = [], []
+        self._ids: tuple[str, ...] = ()
+        self._seen: dict[Kind, object] = {}
+        self._drawn: tuple[Choices, tuple[LossVariant, ...], list[str]] | None = None
 
     def build(self) -> None:
         bindings = self._context.bindings
         self.lmax_study = LmaxStudyPanel()
         self.coarsening_study = CoarseningStudyPanel()
         self.gallery, self.bar = GalleryPanel(), LossSelector()
-        self.variations: dict[str, SweepPanel] = {}
-        for key in SWEEPS:
-            self.variations[key] = SweepPanel(key)
+        self.variations = {key: SweepPanel(key) for key in SWEEPS}
         self.variations["facets"].facetsChosen.connect(
             lambda count: self._session.choose(stop_at="facets", n_facets=count)
         )
-        self.tabs = self._tabs()
+        self._panels: tuple[LmaxStudyPanel | CoarseningStudyPanel | SweepPanel | GalleryPanel, ...] = (
+            self.coarsening_study,
+            *self.variations.values(),
+            self.lmax_study,
+            self.gallery,
+        )
         self._place()
         self.sweeps = SweepController(self._context, self.variations, self.bar)
+        self.drawing = RunController(self._context, self.gallery.card, "gallery", self.draw_gallery)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
-        self.gallery.frame.startRequested.connect(self.draw_gallery)
-        self.gallery.frame.cancelRequested.connect(self._session.cancel)
-        bindings.refresh("tasks", self._show_gallery_task, slow=True)
-        bindings.refresh("particles", self._name_gallery_button)
+        self.lmax_study.tolerance.valueChanged.connect(lambda _value: self._show(Kind.LMAX_STUDY))
+        bindings.refresh("particles", self._follow_particles)
         bindings.refresh("choices", self._show_l_max, ("l_max",), slow=True)
+        bindings.refresh("choices", self._mark_gallery, slow=True)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {"run_all": self.run_all, "save": self.save}
@@ -189,7 +183,7 @@ class StudiesPage(PageWidget):
     def run_all(self) -> None:
         """Start all studies that the choices allow, and the gallery."""
         if not self._session.particles:
-            self._context.toast.problem(tr("No particle is open; open a mesh first."))
+            self._context.toast.problem(tr(NO_PARTICLE))
             return
         for kind in KINDS:
             self.start(kind)
@@ -212,27 +206,32 @@ class StudiesPage(PageWidget):
         """Coarsen the current particle and those after it with each loss function."""
         entries = self._session.particles
         if not entries:
-            self._context.toast.problem(tr("No particle is open; open a mesh first."))
+            self._context.toast.problem(tr(NO_PARTICLE))
             return
         ids = [entry.id for entry in entries]
         first = ids.index(self._session.choices.selected) if self._session.choices.selected in ids else 0
         shown = [*entries[first:], *entries[:first]][:MAX_PARTICLES]
-        rows = chosen_rows(self.bar.names(), self._session.choices)
-        self._drawn = [row.label for row in rows], [entry.particle.name for entry in shown]
-        self.gallery.begin([entry.id for entry in shown], [translate(row.label) for row in rows])
-        job = Job(
-            coarsen_gallery,
-            (tuple(entry.particle for entry in shown), self._session.choices.coarsening_request, rows),
-        )
-        show = self.gallery.show_cells
-        self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, queue="gallery")
+        choices = self._session.choices
+        rows = chosen_rows(self.bar.names(), choices)
+        self._drawn = choices, rows, [entry.particle.name for entry in shown]
+        self.gallery.begin(shown, [translate(row.label) for row in rows])
+        particles = tuple(entry.particle for entry in shown)
+        job = Job(coarsen_gallery, (particles, choices.coarsening_request, rows))
+        self.drawing.start(tr("Coarsening for the gallery"), job, self._show_cells)
+
+    def _show_cells(self, cells: list[GalleryCell]) -> ResultRecord:
+        assert self._drawn is not None
+        self.gallery.show_cells(cells)
+        return self.gallery.record(*self._drawn[:2])
 
     def save(self) -> None:
         """Ask for a folder and write tables and figures of all results."""
         found = {kind.value: getattr(self._session.results, kind.value) for kind in KINDS}
         found |= {f"{key}_study": study for key, study in self.sweeps.results.items() if study.names}
-        if cells := self.gallery.value():
-            found["solids_study"] = study_of_cells(cells, *self._drawn)
+        cells = self.gallery.value()
+        if self._drawn is not None and cells:
+            _, rows, names = self._drawn
+            found["solids_study"] = study_of_cells(cells, [row.label for row in rows], names)
         done = tuple((kind, study) for kind, study in found.items() if study is not None)
         if not done:
             self._context.toast.problem(tr("Compute a study first."))
@@ -247,80 +246,73 @@ class StudiesPage(PageWidget):
 
     def _report_written(self, paths: tuple[Path, ...]) -> None:
         listed = "\n".join(str(path) for path in paths)
-        self._context.toast.note(
-            tr("{count} files were written to {folder}.", count=len(paths), folder=paths[0].parent), listed
-        )
+        sentence = tr("Tables and figures are in {folder}.", folder=paths[0].parent)
+        if unfinished := self._unfinished():
+            sentence += " " + tr("Unfinished: {names}.", names=", ".join(unfinished))
+        self._context.toast.note(sentence, listed)
+
+    def _unfinished(self) -> list[str]:
+        """Titles of the tabs whose results are partial."""
+        partial_states = (ResultState.RUNNING, ResultState.STOPPED)
+        return [
+            self.tabs.tabText(self.tabs.indexOf(panel))
+            for panel in self._panels
+            if panel.card.record.state in partial_states and panel.card.record.values
+        ]
 
     def _wire(self, kind: Kind, panel: LmaxStudyPanel | CoarseningStudyPanel) -> None:
-        session, bindings = self._session, self._context.bindings
+        panel.card.startRequested.connect(partial(self.start, kind))
+        panel.card.stopRequested.connect(partial(self._session.stop, kind))
+        show = partial(self._show, kind)
+        self._context.bindings.refresh(f"{kind.value} tasks", show, slow=True)
 
-        def show() -> None:
-            panel.show_study(getattr(session.results, kind.value), kind.value in session.results.outdated)
+    def _show(self, kind: Kind) -> None:
+        """Show a study of the session, and on its card whether it runs, is complete and fits the choices."""
+        results = self._session.results
+        study, made = getattr(results, kind.value), self._session.choices_of(kind)
+        task = next((task for task in self._session.tasks if task.queue == kind), None)
+        panel = self.lmax_study if kind is Kind.LMAX_STUDY else self.coarsening_study
+        if study is not self._seen.get(kind):
+            self._seen[kind] = study
+            panel.show_study(study)
+        known = study is not None and study.names
+        record = panel.record(study, made) if known and made is not None else ResultRecord()
+        state = ResultState.NONE
+        if task is not None:
+            state = ResultState.RUNNING
+        elif kind.value in results.failures:
+            record = replace(record, note=translate(results.failures[kind.value]))
+            state = ResultState.FAILED
+        elif known:
+            complete = len(study.names) + len(study.failures) == len(self._session.particles)
+            state = ResultState.CURRENT if complete else ResultState.STOPPED
+            state = ResultState.STALE if kind.value in results.outdated else state
+        panel.card.show_record(replace(record, state=state))
+        panel.card.show_task(task)
 
-        def tasks() -> None:
-            panel.frame.show_task(next((task for task in session.tasks if task.queue == kind), None))
+    def _follow_particles(self) -> None:
+        ids = tuple(entry.id for entry in self._session.particles)
+        if ids == self._ids:
+            return
+        self._ids = ids
+        self.sweeps.forget()
+        self.drawing.forget()
+        self.gallery.clear()
+        self._drawn = None
+        for panel in self._panels:
+            panel.card.set_startable("" if ids else tr(NO_PARTICLE))
 
-        panel.frame.startRequested.connect(partial(self.start, kind))
-        panel.frame.cancelRequested.connect(session.cancel)
-        bindings.refresh(kind.value, show, slow=True)
-        bindings.refresh("tasks", tasks, slow=True)
-        bindings.refresh("particles", lambda: panel.frame.set_count(len(session.particles)))
+    def _mark_gallery(self) -> None:
+        if self._drawn is not None:
+            made, now = self._drawn[0], self._session.choices
+            self.drawing.set_outdated(depends(Kind.COARSENING_STUDY, made, now))
 
     def _show_l_max(self) -> None:
         self.lmax_study.show_l_max(self._session.choices.l_max)
 
-    def _show_gallery_task(self) -> None:
-        mine = [task for task in self._session.tasks if task.queue == f"{self._context.key}:gallery"]
-        self.gallery.frame.show_task(mine[0] if mine else None)
-
-    def _name_gallery_button(self) -> None:
-        count = len(self._session.particles)
-        self.gallery.frame.set_count(count)
-        self.gallery.frame.start.setText(
-            tr_count(
-                N_("Draw the polyhedra of this particle"),
-                N_("Draw the polyhedra of {count} particles"),
-                min(count, MAX_PARTICLES),
-            )
-        )
-
-    def _tabs(self) -> QTabWidget:
-        pages = [(self.variations[key], tr(title)) for key, title in TABS.items()]
-        return tabs("studies_coarsening", [(self.coarsening_study, tr("Losses")), *pages])
-
     def _place(self) -> None:
-        above = side_by_side(
-            [_titled(tr(LMAX_TITLE), _framed(self.lmax_study)), _titled(tr(COARSENING_TITLE), self.tabs)],
-            [320, 1020],
-            stretch=1,
-        )
-        above.setObjectName("studies_figures")
-        self.tabs.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # keeps its buttons
-        below = _titled(tr("Polyhedra by loss function (Fig. 7)"), _framed(self.gallery))
-        rows = stacked([above, below], [370, 500], stretch=1)
-        rows.setObjectName("studies_rows")
-        parts = [padded(rows, 10, 10, 2, 8), scrolled_column([self.bar], 0)]
-        columns = side_by_side(parts, [1200, BAR_WIDTH], stretch=0)
-        columns.setObjectName("studies_columns")
+        self.tabs = tabs("studies_tabs", list(zip(self._panels, map(tr, TABS), strict=True)))
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(columns)
-
-
-def _titled(title: str, part: QWidget) -> QWidget:
-    frame = QWidget()
-    column = QVBoxLayout(frame)
-    column.setContentsMargins(0, 0, 0, 0)
-    column.addWidget(heading(title))
-    column.addWidget(part, 1)
-    return frame
-
-
-def _framed(part: QWidget) -> QTabWidget:
-    """A single widget with the border and background of tabs."""
-    box = QTabWidget()
-    box.tabBar().hide()
-    for bare in (box, box.tabBar()):
-        bare.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # a hidden bar would hold Tab back
-    box.addTab(part, "")
-    return box
+        layout.setContentsMargins(10, 10, 10, 8)
+        layout.addWidget(self.bar)
+        layout.addWidget(self.tabs, 1)

@@ -2,20 +2,29 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QTableWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QStackedLayout, QTableWidgetItem, QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.session.choices import Choices
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy
-from regolith_studio.studies.sweeps import differences, format_difference, significant
+from regolith_studio.studies.lmax import LmaxStudy
+from regolith_studio.studies.sweeps import (
+    best_row,
+    descriptor_error,
+    differences,
+    format_difference,
+    significant,
+)
+from regolith_studio.ui.layout import control_row, left_aligned
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.heat_table import (
@@ -30,7 +39,7 @@ from regolith_studio.ui.widgets.numbers import DecimalField
 from regolith_studio.ui.widgets.plots.base import Numbers
 from regolith_studio.ui.widgets.plots.curves import HOVER_DISTANCE, CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.plots.export import plain_text
-from regolith_studio.ui.widgets.study_frame import StudyFrame
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 from regolith_studio.ui.widgets.table import FontRowHeight, definition
 
 Values = tuple[float, ...]
@@ -216,7 +225,54 @@ class SensitivityTable(QWidget):
         return colour
 
 
+COMPUTE, RECOMPUTE = N_("Compute"), N_("Recompute")
+
+
+def study_card(name: str, *captions: str) -> ResultView:
+    """The card above a study."""
+    return ResultView(f"{name}_result", captions, tr(COMPUTE), tr(RECOMPUTE), lines=2)
+
+
+def study_panel(panel: QWidget, *parts: QWidget) -> None:
+    """Lay a panel out: card and controls above what takes the room that is left."""
+    layout = QVBoxLayout(panel)
+    layout.setContentsMargins(8, 8, 8, 4)
+    for part in parts:
+        layout.addWidget(part, int(part is parts[-1]))
+
+
+def particles_text(study: CoarseningStudy | LmaxStudy) -> str:
+    """Number of particles of a study, and of those that were left out."""
+    words = [tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))]
+    if study.failures:
+        words.append(tr("{count} left out", count=len(study.failures)))
+    return ", ".join(words)
+
+
+def coarsening_record(
+    study: CoarseningStudy, choices: Choices, values: tuple[str, ...], note: str = ""
+) -> ResultRecord:
+    """What a study of the coarsening was made from and with."""
+    method = translate(METHODS[choices.method].label)
+    target = tr("target: particle")
+    if choices.target == "fit":
+        target = tr("target: fit of degree {l_max}", l_max=choices.l_max)
+    numbers = sorted({row.n_facets for row in study.rows})
+    facets = " – ".join(str(each) for each in (numbers[0], numbers[-1])[: len(numbers)])
+    words = [method, tr("n = {facets}", facets=facets), target, tr("seed {seed}", seed=choices.seed)]
+    if study.box_metric != "exact":
+        words.append(tr("box of {name}", name=study.box_metric))
+    if unmet := sum(study.n_unmet):
+        total = len(study.names) * len(study.rows)
+        unmet_text = tr("{unmet} of {total} requests not met exactly", unmet=unmet, total=total)
+        note = "; ".join(filter(None, (note, unmet_text)))
+    return ResultRecord(values, particles_text(study), ", ".join(words), note=note)
+
+
 LMAX_PLACEHOLDER = N_("Root mean squared relative error of each descriptor against l<sub>max</sub>.")
+
+
+BEST_TIP = N_("The smallest mean RMSRE of the six descriptors; of equal ones, the smallest Jaccard distance")
 
 
 class LmaxStudyPanel(QWidget):
@@ -225,47 +281,8 @@ class LmaxStudyPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("lmax_study")
-        self.plot = CurvePlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(LMAX_PLACEHOLDER))
-        self.frame = StudyFrame("lmax_study", self.plot)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self._asked())
-        layout.addWidget(self.frame, 1)
-        self._study: Any = None
-        self._answer()
-
-    def show_study(self, study: Any, outdated: bool) -> None:
-        """Draw an ``LmaxStudy``, or nothing."""
-        self._study = study
-        if study is None:
-            self.plot.set_curves([])
-            self.frame.set_hint("")
-            self._answer()
-            return
-        values = 100.0 * np.asarray(study.rmsre())
-        degrees = tuple(float(degree) for degree in study.degrees)
-        curves = [
-            PlotCurve(
-                rich_symbol(CATALOGUE[key].symbol),
-                DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)],
-                degrees,
-                tuple(values[:, number]),
-                markers=True,
-            )
-            for number, key in enumerate(study.keys)
-        ]
-        self.plot.set_curves(curves)
-        self.plot.legend.setToolTip("\n".join(map(definition, study.keys)))
-        count = tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))
-        self.frame.set_hint(count + "; " + tr("computed with other choices") if outdated else count)
-        self._answer()
-
-    def show_l_max(self, l_max: int) -> None:
-        """Mark the chosen degree."""
-        self.plot.set_marker(float(l_max))
-
-    def _asked(self) -> QWidget:
-        """The row with the tolerance and the smallest sufficient l_max."""
+        self.plot = BandPlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(LMAX_PLACEHOLDER))
+        self.card = study_card("lmax_study", tr("Smallest l<sub>max</sub>"))
         self.tolerance = DecimalField()
         self.tolerance.setObjectName("lmax_study_tolerance")
         self.tolerance.setAccessibleName(tr("Largest error in percent"))
@@ -273,26 +290,41 @@ class LmaxStudyPanel(QWidget):
         self.tolerance.setDecimals(1)
         self.tolerance.setValue(5.0)
         self.tolerance.setSuffix(" %")
-        self.tolerance.valueChanged.connect(lambda _value: self._answer())
-        self.answer = QLabel()
-        self.answer.setObjectName("lmax_study_answer")
-        self._question = QWidget()
-        row = QHBoxLayout(self._question)
-        row.setContentsMargins(8, 8, 8, 0)
-        words = QLabel(tr("Smallest l<sub>max</sub> with every error below"))
-        for label, share in ((words, 2), (self.answer, 1)):
-            label.setWordWrap(True)  # on two lines where letters are large
-            row.addWidget(label, share)
-        row.insertWidget(1, self.tolerance)
-        return self._question
+        asked = control_row(QLabel(tr("Smallest l<sub>max</sub> with every error below")), self.tolerance)
+        study_panel(self, self.card, left_aligned(asked), self.plot)
 
-    def _answer(self) -> None:
-        self._question.setVisible(self._study is not None)
-        if self._study is not None:
-            found = self._study.smallest_l_max(self.tolerance.value() / 100)
-            self.answer.setText(
-                f'<b style="font-size:x-large">{found}</b>' if found is not None else tr("none of these")
+    def show_study(self, study: LmaxStudy | None) -> None:
+        """Draw a study, or nothing."""
+        if study is None:
+            self.plot.set_series([])
+            return
+        values, (low, high) = 100.0 * study.rmsre(), 100.0 * study.bands()
+        degrees = tuple(float(degree) for degree in study.degrees)
+        series = [
+            Series(
+                rich_symbol(CATALOGUE[key].symbol),
+                DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)],
+                degrees,
+                tuple(values[:, number].tolist()),
+                tuple(low[:, number].tolist()),
+                tuple(high[:, number].tolist()),
             )
+            for number, key in enumerate(study.keys)
+        ]
+        self.plot.set_series(series)
+        self.plot.legend.setToolTip("\n".join(map(definition, study.keys)))
+
+    def record(self, study: LmaxStudy, choices: Choices) -> ResultRecord:  # noqa: ARG002
+        """The smallest degree within the tolerance, and what the study was made from and with."""
+        found = study.smallest_l_max(self.tolerance.value() / 100)
+        note = "" if found is not None else tr("none of these")
+        made_with = tr("degrees {first} to {last}", first=study.degrees[0], last=study.degrees[-1])
+        values = ("–" if found is None else str(found),)
+        return ResultRecord(values, particles_text(study), made_with, note=note)
+
+    def show_l_max(self, l_max: int) -> None:
+        """Mark the chosen degree."""
+        self.plot.set_marker(float(l_max))
 
 
 LOSS_PLACEHOLDER = N_("Root mean squared relative error of each descriptor, one row per loss function.")
@@ -306,30 +338,37 @@ class CoarseningStudyPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("coarsening_study")
-        self._study: Any = None
+        self._study: CoarseningStudy | None = None
         self.table = HeatTable(tr(LOSS_PLACEHOLDER))
-        self.frame = StudyFrame("coarsening_study", self.table)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.frame)
+        self.card = study_card("coarsening_study", tr("RMSRE of the best row"), tr("Its Jaccard distance"))
+        self.card.caption(0, tr("RMSRE of the best row"), tr(BEST_TIP))
+        study_panel(self, self.card, self.table)
 
-    def show_study(self, study: Any, outdated: bool) -> None:
-        """Show a ``CoarseningStudy``, or nothing."""
-        if study is None or not study.names:
-            self._study = None
+    def show_study(self, study: CoarseningStudy | None) -> None:
+        """Show a study, or nothing."""
+        self._study = study if study is not None and study.names else None
+        if self._study is None:
             self.table.set_values([], HEADERS, [])
-            self.frame.set_hint("")
             return
-        self._study = study
-        labels, ends = [translate(row.label) for row in study.rows], study.bands.tolist()
+        labels, ends = [translate(row.label) for row in self._study.rows], self._study.bands.tolist()
         tips = [definition(key) for key in KEYS]
-        self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]), tips)
+        self.table.set_values(labels, HEADERS, self._study.rmsre.tolist(), (ends[0], ends[1]), tips)
+        self.table.mark_row(best_row(self._study), tr(BEST_TIP))
         self._set_tool_tips()
-        count = tr_count(N_("RMSRE [%], 1 particle"), N_("RMSRE [%], {count} particles"), len(study.names))
-        count += ", " + tr("{share:.0%} bootstrap intervals", share=study.confidence)
-        if study.box_metric != "exact":
-            count += ", " + tr("box of {name}", name=study.box_metric)
-        self.frame.set_hint(count + "; " + tr("computed with other choices") if outdated else count)
+
+    def record(self, study: CoarseningStudy, choices: Choices) -> ResultRecord:
+        """The best row, and what the study was made from and with."""
+        best = best_row(study)
+        values = tuple(
+            number_text(float(each), ".1%")
+            for each in (descriptor_error(study.rmsre)[best], study.rmsre[best, -1])
+        )
+        notes = [tr("best: {row}", row=translate(study.rows[best].label))]
+        if len(study.names) > 1:
+            notes.append(
+                tr("below each RMSRE [%] its {share:.0%} bootstrap interval", share=study.confidence)
+            )
+        return coarsening_record(study, choices, values, "; ".join(notes))
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""

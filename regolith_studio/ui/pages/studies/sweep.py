@@ -4,17 +4,15 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Protocol
 
+import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QMouseEvent
 from PySide6.QtWidgets import (
-    QFormLayout,
     QHBoxLayout,
     QLabel,
     QMenu,
     QPushButton,
-    QSizePolicy,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -26,14 +24,31 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import loss_names
 from regolith_studio.studies.coarsening import COLUMNS, MIN_PLOTTED, CoarseningStudy
 from regolith_studio.studies.loss_variants import ALONE, PAPER_LOSSES
-from regolith_studio.studies.sweeps import GAIN, SWEEPS, descriptor_error, pareto_front, sufficient_facets
-from regolith_studio.ui.pages.studies.plots import BandPlot, SensitivityTable, Series
-from regolith_studio.ui.translation import tr, tr_count, translate
+from regolith_studio.studies.sweeps import (
+    GAIN,
+    SWEEPS,
+    descriptor_error,
+    differences,
+    format_difference,
+    pareto_front,
+    significant,
+    sufficient_facets,
+)
+from regolith_studio.ui.layout import control_row
+from regolith_studio.ui.pages.studies.plots import (
+    BandPlot,
+    SensitivityTable,
+    Series,
+    coarsening_record,
+    study_card,
+    study_panel,
+)
+from regolith_studio.ui.translation import localized, tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label, plain_symbol, rich_symbol
+from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label, plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.numbers import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
-from regolith_studio.ui.widgets.study_frame import StudyFrame
+from regolith_studio.ui.widgets.result_view import ResultRecord
 from regolith_studio.ui.widgets.table import definition
 
 ARROW = "  ▾"
@@ -42,8 +57,6 @@ BOX_TIP = N_(
     "Diameters and aspect ratio come from this box. The heuristic is no minimum; "
     "it is offered for comparison."
 )
-
-EQUAL_TIP = N_("Losses can be compared at equal numbers of facets only; choose the number beside Facets n.")
 
 
 class LossSelector(QWidget):
@@ -59,25 +72,18 @@ class LossSelector(QWidget):
         self.rows.setObjectName("study_rows")
         self.rows.setAccessibleName(tr("Losses of the studies"))
         self.rows.setToolTip(tr("Loss functions that are the rows of the studies"))
-        self.rows.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
         self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
         self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
         self.box.setToolTip(tr(BOX_TIP))
-        self.hint_label = hint_label()
-        self.hint_label.setObjectName("study_facets_remark")
-        self.hint_label.setToolTip(tr(EQUAL_TIP))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        for part in (
-            heading(tr("Loss functions")),
-            self.rows,
-            heading(tr("Bounding box")),
-            self.box,
-            FixedHeightText((self.hint_label,)),
-        ):
-            column.addWidget(part)
+        self.hint_label = ElidedLabel(role="hint")
+        self.hint_label.setObjectName("study_facets_hint")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        for part in (QLabel(tr("Loss functions")), self.rows, QLabel(tr("Bounding box")), self.box):
+            row.addWidget(part)
+        row.addWidget(self.hint_label, 1)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
         self.set_names(PAPER_LOSSES)
 
@@ -251,17 +257,23 @@ PARTS: Mapping[str, Callable[[], QWidget]] = {
 """View of each sweep, by key."""
 
 
+CAPTIONS = {
+    "facets": N_("Sufficient facets"),
+    "tradeoff": N_("Losses on the Pareto front"),
+    "sensitivity": N_("Largest change [pp]"),
+}
+"""Of the result of each sweep."""
+
+
 class SweepPanel(QWidget):
     """Edits the values of a sweep and shows its results."""
 
-    startRequested = Signal()  # noqa: N815
     facetsChosen = Signal(int)  # noqa: N815
 
     def __init__(self, key: str) -> None:
         super().__init__()
         self.setObjectName(f"{key}_study")
-        self._key, self._enough = key, 0
-        self._variation = SWEEPS[key]
+        self._key, self._variation = key, SWEEPS[key]
         self.values = NumbersLine(", ".join(f"{value:g}" for value in self._variation.values))
         self.values.setObjectName(f"{key}_values")
         self.values.setAccessibleName(tr(self._variation.asks))
@@ -269,22 +281,16 @@ class SweepPanel(QWidget):
         self.asked, self.note = QLabel(tr(self._variation.asks)), hint_label(tr(ON_AND_OFF))
         self.part = PARTS[key]()
         self.part.setAccessibleName(tr(self._variation.title))
-        self.frame = StudyFrame(key, self.part)
-        asking = QFormLayout()
-        asking.setContentsMargins(8, 6, 8, 0)
-        asking.setHorizontalSpacing(8)
-        asking.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
-        asking.addRow(self.asked, self.values)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(0)
-        asking.addRow(self.note)
+        self.card = study_card(key, tr(CAPTIONS[key]))
+        self.take = QPushButton(self)
+        self.take.setObjectName(f"{key}_take")
+        self.take.hide()
+        self._enough = 0
+        self.take.clicked.connect(lambda: self.facetsChosen.emit(self._enough))
+        if key == "facets":
+            self.card.add(self.take)
         self.note.hide()
-        layout.addLayout(asking)
-        layout.addWidget(self._make_answer())
-        layout.addWidget(self.frame, 1)
-        self.values.returnPressed.connect(self.startRequested)
-        self.frame.startRequested.connect(self.startRequested)
+        study_panel(self, self.card, control_row(self.asked, self.values), self.note, self.part)
 
     def show_method(self, method: str) -> None:
         """Show the field of values if the method uses them."""
@@ -293,58 +299,41 @@ class SweepPanel(QWidget):
             each.setVisible(takes)
         self.note.setVisible(not takes)
 
-    def show_study(self, study: CoarseningStudy | None, outdated: bool) -> None:
+    def show_study(self, study: CoarseningStudy | None) -> None:
         """Show the results, or nothing."""
         shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.show_study(study)
-        self._show_answer(study)
-        self.frame.set_hint("" if study is None else summary_text(study, outdated))
+        known = study is not None and len(study.rows) > 1
+        self.take.setVisible(known and self._key == "facets")
+        if study is not None and known:
+            self._enough = sufficient_facets(study)
+            self.take.setText(tr("Use {count} facets", count=self._enough))
 
-    def _make_answer(self) -> QWidget:
-        """The row with the number of facets from which on nothing is gained, and a button that takes it."""
-        self.answer, self.take = QLabel(), QPushButton()
-        self.answer.setObjectName(f"{self._key}_answer")
-        self.answer.setWordWrap(True)
-        self.take.setObjectName(f"{self._key}_take")
-        self.take.clicked.connect(lambda: self.facetsChosen.emit(self._enough))
-        self._answers = QWidget()
-        self._answers.hide()
-        row = QHBoxLayout(self._answers)
-        row.setContentsMargins(8, 4, 8, 0)
-        row.addWidget(self.answer, 1)
-        row.addWidget(self.take)
-        return self._answers
-
-    def _show_answer(self, study: CoarseningStudy | None) -> None:
-        if self._key != "facets":
-            return
-        self._answers.setVisible(study is not None and len(study.rows) > 1)
-        if study is None:
-            return
-        self._enough = sufficient_facets(study)
-        if self._enough < max(row.n_facets for row in study.rows):
-            text = N_(
-                "<b>{count} facets</b> are sufficient: with more, no error falls by more than {gain:.1%}."
-            )
-        else:
-            text = N_("The errors still fall at <b>{count} facets</b>, the largest number here.")
-        self.answer.setText(tr(text, count=self._enough, gain=GAIN))
-        self.take.setText(tr("Use {count} facets", count=self._enough))
+    def record(self, study: CoarseningStudy, choices: Choices) -> ResultRecord:
+        """The answer of the sweep, and what it was made from and with."""
+        answers = {"facets": _facets_answer, "tradeoff": _front_answer, "sensitivity": _change_answer}
+        value, note = answers[self._key](study)
+        return coarsening_record(study, choices, (value,), note)
 
 
-def summary_text(study: CoarseningStudy, outdated: bool) -> str:
-    """Number of particles, box, unmet requests, and whether the choices have changed since."""
-    words = [tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))]
-    if study.box_metric != "exact":
-        words.append(tr("box of {name}", name=study.box_metric))
-    if study.failures:
-        words.append(tr("{count} left out", count=len(study.failures)))
-    if unmet := sum(study.n_unmet):
-        words.append(
-            tr(
-                "{unmet} of {total} requests not met exactly",
-                unmet=unmet,
-                total=len(study.names) * len(study.rows),
-            )
-        )
-    return "; ".join([", ".join(words), *([tr("computed with other choices")] if outdated else [])])
+def _facets_answer(study: CoarseningStudy) -> tuple[str, str]:
+    enough = sufficient_facets(study)
+    if enough < max(row.n_facets for row in study.rows):
+        return str(enough), tr("with more, no error falls by more than {gain:.1%}", gain=GAIN)
+    return "–", tr("the errors still fall at {count} facets, the largest number here", count=enough)
+
+
+def _front_answer(study: CoarseningStudy) -> tuple[str, str]:
+    front = pareto_front(study)
+    names = ", ".join(translate(study.rows[row].label) for row in front)
+    return tr("{count} of {total}", count=len(front), total=len(study.rows)), names
+
+
+def _change_answer(study: CoarseningStudy) -> tuple[str, str]:
+    if len(study.rows) < 2 or not significant(study).any():
+        return "0", tr("no change of a weight changes an error significantly")
+    values = np.where(significant(study), differences(study)[0], 0.0)
+    row, column = np.unravel_index(int(np.abs(values).argmax()), values.shape)
+    symbol = OVERLAP if COLUMNS[column] == JACCARD else plain_symbol(CATALOGUE[COLUMNS[column]].symbol)
+    change = localized(format_difference(100 * float(values[row, column])))
+    return change, tr("{column} at {row}", column=symbol, row=translate(study.rows[row + 1].label))
