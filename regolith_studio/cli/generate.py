@@ -1,5 +1,6 @@
 """``generate``: virtual particles from a fitted sample, a fitted model or a material card."""
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -170,6 +171,57 @@ def generate(
                 f"{draws.rejected} draws thrown away, which biases those kept: mean radius "
                 f"{100 * bias['mean_radius']:+.1f} %, A_2 {100 * bias['second_degree']:+.1f} %."
             )
+    raise typer.Exit(code)
+
+
+CardFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        help="JSON file of the card to write; without it a card is read and shown.",
+        metavar="CARD.json",
+        parser=output_path,
+        callback=claim_json,
+    ),
+]
+
+
+@with_dataclass_options
+def card(
+    *,
+    sources: Sources,
+    output: CardFile = None,
+    name: Annotated[str, typer.Option("--name", help="Lower-case name; that of the file if omitted.")] = "",
+    label: Annotated[str, typer.Option("--label", help="What people call the material.")] = "",
+    origin: Annotated[str, typer.Option("--origin", help="Where the particles come from.")] = "",
+    reading: ReadingOptions,
+    json: Json = False,
+    jobs: Jobs = 1,
+) -> None:
+    """Make the material card of a sample, or show what a card measures, assumes and misses."""
+    from regolith_studio.jobs.model_jobs import make_card
+    from regolith_studio.shape_models.materials import MaterialCard, write_card
+    from regolith_studio.shape_models.sample import Sample
+
+    source, code = shape_source(sources, reading, None, jobs)
+    print_errors(source.notes)
+    content = source.content
+    if output is not None:
+        if not isinstance(content, Sample):
+            raise typer.BadParameter("A card is made of a sample: give meshes or the file of their fits.")
+        title = name or re.sub(r"[^a-z0-9_]+", "_", output.stem.lower())
+        steps = make_card(content, title, label or title, origin or f"A sample called {source.name}.")
+        content = run_with_progress(steps)
+        write_card(content, output)
+    if not isinstance(content, MaterialCard):
+        raise typer.BadParameter("Name a file for the card with --output, or give a card to be shown.")
+    if json:
+        print_json(content.model_dump(mode="json"))
+    else:
+        lines = [f"{content.label}: {content.origin}", *(f"Measured: {each}" for each in content.measured)]
+        lines += [*(f"Assumed: {each}" for each in content.assumed), content.evaluated]
+        typer.echo("\n".join(filter(None, lines)))
     raise typer.Exit(code)
 
 

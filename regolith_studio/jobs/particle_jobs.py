@@ -28,6 +28,7 @@ from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, Ta
 from regolith_studio.readers.particles import (
     FileProblem,
     LoadedParticles,
+    MeshFile,
     collect_particles,
     find_files,
     left_out,
@@ -47,20 +48,35 @@ def load_particles(
     paths: Sequence[Path],
     reading: ReadingSettings = AS_USUAL,
     tables: TableReading = DEFAULT_TABLE_READING,
+    most: int | None = None,
+    seed: int = 0,
 ) -> Steps:
-    """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
+    """Read the meshes in `paths` (files, folders, archives); returns :class:`LoadedParticles`.
 
-    Tables of coefficients are read as `tables` says.
+    Tables of coefficients are read as `tables` says. Of more members of archives than `most` a random part is
+    read.
     """
     problems: list[FileProblem] = []
     results: list[Particle | FileProblem] = []
     files = find_files(paths, problems, tables)
+    files, notes = _random_part(files, len(files) if most is None else most, seed)
     yield from compile_first("read")
     yield Started(N_("Reading particles"), len(files))
     for done, (file, result) in enumerate(read_each(files, reading), start=1):
         results.append(result)
         yield Progress(done, len(files), file.path.name)
-    return replace(collect_particles(results, problems), left_out=tuple(left_out(paths)))
+    return replace(collect_particles(results, problems), left_out=(*notes, *left_out(paths)))
+
+
+def _random_part(files: list[MeshFile], most: int, seed: int) -> tuple[list[MeshFile], tuple[str, ...]]:
+    """The files with at most so many members of archives, in order, and a sentence if that is a part."""
+    members = [index for index, file in enumerate(files) if file.member is not None]
+    if len(members) <= most:
+        return files, ()
+    left = set(members) - set(np.random.default_rng(seed).choice(members, most, replace=False).tolist())
+    sentence = N_("Shown is a random part of the archive: {shown} of {total}, seed {seed}.")
+    note = Message(sentence, shown=Number(most, ",d"), total=Number(len(members), ",d"), seed=seed)
+    return [file for index, file in enumerate(files) if index not in left], (note,)
 
 
 def measure_first(paths: Sequence[Path], convention: TableConvention = "auto") -> Steps:

@@ -39,6 +39,9 @@ from regolith_studio.session.results import Failure, ParticleEntry, Results, Ses
 from regolith_studio.session.study_requests import study_job
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 
+MOST_SHOWN = 1000
+"""Members of an archive that are opened, at random: each is a mesh in memory."""
+
 
 class Session:
     """Particles, choices and results of one user; belongs to the thread that made it.
@@ -141,7 +144,8 @@ class Session:
         reading = replace(reading, unit=unit or reading.unit)
         named = tuple(Path(path).absolute() for path in paths)
         origin = FileSource(tuple(map(str, named)), reading, convention=convention)
-        job = Job(load_particles, (named, reading, TableReading(None, convention)))
+        tables = TableReading(None, convention)
+        job = Job(load_particles, (named, reading, tables, MOST_SHOWN, self.choices.seed))
         return self._load(N_("Reading particles"), job, origin, add)
 
     def open_sample(self, add: bool = False) -> int:
@@ -352,7 +356,7 @@ class Session:
     ) -> None:
         if loaded.problems:
             self.events.problems.emit(loaded.problems)
-        elif loaded.left_out:
+        if loaded.left_out:
             self.events.left_out.emit(loaded.left_out)
         kept = self.particles if add else ()
         fresh = unique_names(loaded.particles, [entry.id for entry in kept])

@@ -69,6 +69,24 @@ class MaterialCard(BaseModel):
         description="Wasserstein distance of draws of the hull field to the sample, percent of the mean.",
     )
 
+    measured: tuple[str, ...] = Field(default=(), description="What is measured of the material.")
+    assumed: tuple[str, ...] = Field(default=(), description="What is assumed, as it is not known.")
+    published: dict[str, tuple[float, float]] = Field(
+        default_factory=dict, description="Mean and its spread by key of the catalogue, or S/L."
+    )
+    drawn: dict[str, float] = Field(default_factory=dict, description="Means of draws, by the same keys.")
+
+    @property
+    def missed(self) -> str:
+        """A sentence on the published means that draws miss by more than their spread; empty if none is."""
+        missed = [
+            f"{key} = {self.drawn[key]:.3g} (published {mean:g} ± {spread:g})"
+            for key, (mean, spread) in self.published.items()
+            if key in self.drawn and abs(self.drawn[key] - mean) > spread
+        ]
+        sentence = N_("The card cannot be met within its own spread; draws have {means}.")
+        return Message(sentence, means=", ".join(missed)) if missed else ""
+
     @property
     def l_max(self) -> int:
         """Highest degree that the card knows."""
@@ -88,7 +106,7 @@ class MaterialCard(BaseModel):
         if self.hull_field is None:
             return SPECTRUM_ALONE
         if self.evaluation is None:
-            return ""
+            return self.missed
         return Message(
             N_(
                 "Draws differ from the sample of the card by {equivalent_radius} % in r_eq, {aspect_ratio} % "

@@ -42,7 +42,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
 MESH_FILTERS = (
-    N_("Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)"),
+    N_("Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.zip *.anm *.sh *.shc)"),
     N_("Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)"),
     N_("Projects (*.regolith)"),
     N_("Recipes (*.json)"),

@@ -712,6 +712,10 @@
         <translation>Aspherix (konvexe Vorlagen)</translation>
     </message>
     <message>
+        <source>Assumed: {facts}.</source>
+        <translation>Angenommen: {facts}.</translation>
+    </message>
+    <message>
         <source>At most</source>
         <translation>Höchstens</translation>
     </message>
@@ -890,6 +894,14 @@
     <message>
         <source>Certificates</source>
         <translation>Zertifikate</translation>
+    </message>
+    <message>
+        <source>Chang&apos;e-5 soil (published means)</source>
+        <translation>Boden von Chang&apos;e-5 (veröffentlichte Mittelwerte)</translation>
+    </message>
+    <message>
+        <source>Chang&apos;e-6 soil (published sizes)</source>
+        <translation>Boden von Chang&apos;e-6 (veröffentlichte Größen)</translation>
     </message>
     <message>
         <source>Change</source>
@@ -2672,6 +2684,10 @@
         <translation>Iterationen k_max</translation>
     </message>
     <message>
+        <source>Itokawa particles (published ratios)</source>
+        <translation>Partikel von Itokawa (veröffentlichte Verhältnisse)</translation>
+    </message>
+    <message>
         <source>Its Jaccard distance</source>
         <translation>Deren Jaccard-Distanz</translation>
     </message>
@@ -3158,6 +3174,10 @@
     <message>
         <source>Measured {quantity}</source>
         <translation>Gemessen: {quantity}</translation>
+    </message>
+    <message>
+        <source>Measured: {facts}.</source>
+        <translation>Gemessen: {facts}.</translation>
     </message>
     <message>
         <source>Measuring</source>
@@ -4052,8 +4072,8 @@
         <translation>Partikel</translation>
     </message>
     <message>
-        <source>Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)</source>
-        <translation>Partikel (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)</translation>
+        <source>Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.zip *.anm *.sh *.shc)</source>
+        <translation>Partikel (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.zip *.anm *.sh *.shc)</translation>
     </message>
     <message>
         <source>Particles ({count})</source>
@@ -5216,6 +5236,10 @@
         <translation>Dreiecke zeigen</translation>
     </message>
     <message>
+        <source>Shown is a random part of the archive: {shown} of {total}, seed {seed}.</source>
+        <translation>Gezeigt wird ein zufälliger Teil des Archivs: {shown} von {total}, Startwert {seed}.</translation>
+    </message>
+    <message>
         <source>Shown once the run begins</source>
         <translation>Zu sehen, sobald der Lauf beginnt</translation>
     </message>
@@ -5632,6 +5656,10 @@
         <translation>Auffällige Körner</translation>
     </message>
     <message>
+        <source>Synthesised by Regolith Studio from published means and sizes; the card states what is measured and what is assumed, and no measured particle is contained.</source>
+        <translation>Von Regolith Studio aus veröffentlichten Mittelwerten und Größen erzeugt; die Karte sagt, was gemessen und was angenommen ist, und enthält kein gemessenes Partikel.</translation>
+    </message>
+    <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,230 particles of the published micro-CT set cement133, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
         <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1.230 Partikeln des veröffentlichten Mikro-CT-Satzes cement133, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
@@ -5654,10 +5682,6 @@
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 6,261 particles of the published micro-CT set ma165, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
         <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 6.261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
-    </message>
-    <message>
-        <source>Synthesised by Regolith Studio: mean axial ratios S/I = 0.770 and I/L = 0.758 of ten Apollo and Luna soils (doi:10.1186/s40623-022-01737-9), sizes of soil 10084 between 10 and 1,000 um (Basu et al. 2001, by mass 4.28 +/- 2.23 phi); the roughness is that of the set MA165, as none is published, the spread of the ratios is that of a random field, shape does not depend on size, and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert: mittlere Achsenverhältnisse S/I = 0,770 und I/L = 0,758 von zehn Böden von Apollo und Luna (doi:10.1186/s40623-022-01737-9), Größen von Boden 10084 zwischen 10 und 1.000 µm (Basu et al. 2001, nach Masse 4,28 ± 2,23 phi); die Rauheit ist die des Satzes MA165, da keine veröffentlicht ist, die Streuung der Verhältnisse die eines Zufallsfelds, die Form hängt nicht von der Größe ab, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthetic particle</source>
@@ -5750,6 +5774,10 @@
     <message>
         <source>The bed slips on the wall: grains there lag behind it by {slip} % of its speed.</source>
         <translation>Das Bett rutscht auf der Wand: Körner dort bleiben um {slip} % ihrer Geschwindigkeit zurück.</translation>
+    </message>
+    <message>
+        <source>The card cannot be met within its own spread; draws have {means}.</source>
+        <translation>Die Karte lässt sich nicht innerhalb ihrer eigenen Streuung erfüllen; gezogene Partikel haben {means}.</translation>
     </message>
     <message>
         <source>The card {name} cannot be written ({reason}).</source>

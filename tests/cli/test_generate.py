@@ -40,6 +40,26 @@ def fit(command, ellipsoids: Path, tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
+def test_that_the_card_of_a_sample_is_read_back(command, fit: Path, tmp_path: Path) -> None:
+    path = tmp_path / "my-soil.json"
+    named = ("--label", "My soil", "--origin", "Ellipsoids of a test.")
+    made = command("card", fit, "-o", path, *named, "--json")
+    assert made.code == 0, made.err
+    assert (made.json["name"], made.json["n_particles"]) == ("my_soil", 24)
+    assert command("card", path, "--json").json == made.json
+    shown = command("card", path).out
+    assert shown.startswith("My soil: Ellipsoids of a test.\nDraws differ from the sample of the card by")
+    assert command("generate", path, "-n", 3, "-o", tmp_path / "v").code == 0
+
+
+def test_that_a_shipped_card_says_what_is_measured_and_what_assumed(command, tmp_path: Path) -> None:
+    said = command("card", "itokawa").out
+    assert "Measured: mean axial ratios S/I = 0.707" in said
+    assert "Assumed: the sizes are those of lunar soil 10084" in said
+    assert command("card", "itokawa", "-o", tmp_path / "card.json").code == 2
+
+
+@pytest.mark.slow
 def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
     command, fit: Path, tmp_path: Path
 ) -> None:

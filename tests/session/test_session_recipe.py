@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -42,6 +43,24 @@ LEVEL = 2
 def files(folder: Path) -> dict[str, bytes]:
     found = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
     return {name: path.read_bytes() for name, path in found.items()}
+
+
+@pytest.mark.slow
+def test_that_a_random_part_of_an_archive_is_opened_and_saved_as_a_recipe(
+    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("regolith_studio.session.session.MOST_SHOWN", 3)
+    folder = write_grains(tmp_path / "meshes", *(f"g{number}.stl" for number in range(6)))
+    with ZipFile(tmp_path / "library.zip", "w") as archive:
+        for fraction in ("75m", "300p"):
+            for path in sorted(folder.iterdir()):
+                archive.write(path, f"{fraction}/{path.name}")
+    notes: list[str] = []
+    session.events.left_out.connect(notes.extend)
+    session.open([tmp_path / "library.zip"])
+    assert notes == ["Shown is a random part of the archive: 3 of 12, seed 3."]
+    assert len({entry.id for entry in session.particles}) == 3
+    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
 
 
 def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> SessionRecipe:

@@ -17,9 +17,9 @@ from regolith_studio.shape_models.materials import MaterialCard, materials, read
 from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample, sized
-from regolith_studio.shape_models.size_law import size_law_from
+from regolith_studio.shape_models.size_law import LogNormalSizes, size_law_from
 from regolith_studio.studies.population import descriptors_of
-from tools.make_lunar_card import lunar_card, size_law
+from tools.make_material_cards import MATERIALS, published_card, size_law
 
 
 def test_that_at_least_five_materials_ship_and_say_that_they_are_synthesised() -> None:
@@ -76,10 +76,38 @@ def test_that_lunar_sizes_are_the_sieved_ones() -> None:
 
 @pytest.mark.slow
 def test_that_the_tool_makes_a_card_with_the_ratios_that_it_aims_at() -> None:
-    card = lunar_card(n_particles=60, rounds=1)
+    card = published_card("lunar_soil", n_particles=60, rounds=1)
     assert card.hull_field is not None
-    assert card.hull_field["sizes"] == size_law().stored()
+    assert card.hull_field["sizes"] == size_law(*MATERIALS["lunar_soil"].sizes).stored()
     assert card.evaluation is None
+    assert set(card.drawn) == set(card.published) == {"elongation", "flatness", "S/L"}
+
+
+@pytest.mark.parametrize(("name", "size", "share"), [("chang_e_5", 57.5, 0.5), ("chang_e_6", 48.4, 0.6)])
+def test_that_the_sizes_of_a_card_have_the_published_quantile_by_mass(
+    name: str, size: float, share: float
+) -> None:
+    law = size_law_from((materials()[name].hull_field or {})["sizes"])
+    assert isinstance(law, LogNormalSizes)
+    edges = np.geomspace(10, 1000, 20_001) / 2
+    density = norm.pdf((np.log(edges) - law.means[0]) / law.deviations[0]) * edges**3
+    mass = np.cumsum(density) / density.sum()
+    assert np.interp(size / 2, edges, mass) == pytest.approx(share, abs=0.003)
+
+
+def test_that_cards_say_what_is_measured_what_is_assumed_and_what_they_miss() -> None:
+    cards = [materials()[name] for name in MATERIALS]
+    for card in cards:
+        assert card.measured
+        assert card.assumed
+        assert card.published.keys() == card.drawn.keys()
+        missed = [k for k, (mean, spread) in card.published.items() if abs(card.drawn[k] - mean) > spread]
+        assert ("cannot be met within its own spread" in card.evaluated) == bool(missed)
+        assert all(f"{key} = " in card.evaluated for key in missed)
+    assert materials()["lunar_soil"].evaluated == ""
+    drawn = {"flatness": 0.6}
+    worse = materials()["lunar_soil"].model_copy(update={"drawn": drawn})
+    assert "flatness = 0.6 (published 0.77 ± 0.008)" in worse.evaluated
 
 
 @pytest.mark.slow

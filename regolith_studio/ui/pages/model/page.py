@@ -145,7 +145,12 @@ class SourceBox:
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                words = " ".join(filter(None, (translate(content.evaluated), tr(content.origin))))
+                facts = (
+                    (N_("Measured: {facts}."), content.measured),
+                    (N_("Assumed: {facts}."), content.assumed),
+                )
+                known = (tr(text, facts="; ".join(given)) for text, given in facts if given)
+                words = " ".join(filter(None, (translate(content.evaluated), tr(content.origin), *known)))
                 return SourceKind(content.key, content.l_max, words)
             case Sample():
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
