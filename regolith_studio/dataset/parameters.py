@@ -98,19 +98,11 @@ class LiftingCylinderTest:
 class DrumRotation:
     """How a drum turns about its horizontal axis.
 
-    Parameters
-    ----------
-    rpm
-        Revolutions in a minute.
-    turns
-        That are measured; a quarter of a turn before them is not.
-    moments
-        At which the surface is measured.
+    - ``rpm``: revolutions in a minute.
+    - ``turns``: that are measured; a quarter of a turn before them is not.
+    - ``moments``: at which the surface is measured.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
     rpm: float = _number(10.0, N_("Speed of rotation"), "rpm", 1e-3, 1e5)

@@ -43,25 +43,16 @@ Interval = tuple[float, float]
 class DrumMeasurement:
     """Angles of the surface in a rotating drum, in degrees; intervals of 95 %.
 
-    Parameters
-    ----------
-    angle, interval
-        Mean over the moments; the interval is a bootstrap of blocks, since moments that follow each other
-        are alike.
-    upper, lower
-        Mean angle at which avalanches begin and end, with interval; ``None`` where there are too few.
-    n_avalanches
-        Number of falls of the angle.
-    times, angles
-        Of the moments: seconds and degrees, shape (m,).
-    bend
-        Mean difference of the slope at the upper and the lower end of the fitted part.
-    slip
-        Part of the wall's speed by which grains at the wall lag behind it.
-    froude
-        Centripetal over gravitational acceleration at the wall.
-    warnings
-        Sentences.
+    - ``angle``, ``interval``: mean over the moments; the interval is a bootstrap of blocks, since moments
+      that follow each other are alike.
+    - ``upper``, ``lower``: mean angle at which avalanches begin and end, with interval; ``None`` where
+      there are too few.
+    - ``n_avalanches``: number of falls of the angle.
+    - ``times``, ``angles``: of the moments: seconds and degrees, shape (m,).
+    - ``bend``: mean difference of the slope at the upper and the lower end of the fitted part.
+    - ``slip``: part of the wall's speed by which grains at the wall lag behind it.
+    - ``froude``: centripetal over gravitational acceleration at the wall.
+    - ``warnings``: sentences.
     """
 
     angle: float
@@ -80,10 +71,7 @@ class DrumMeasurement:
 def measure_drum(prepared: PreparedCase, moments: Iterable[ParticleState]) -> DrumMeasurement:
     """Evaluate the moments of a run that has turned its drum, in the order of time.
 
-    Raises
-    ------
-    NotAPileError
-        If there is no surface to measure.
+    Raises NotAPileError if there is no surface to measure.
     """
     test, drum = prepared.case.test, rotation_of(prepared)
     period = 60.0 / drum.rpm
@@ -134,15 +122,9 @@ def surface_slope(points: FloatArray, diameters: FloatArray, radius: float) -> t
 
     Theil and Sen's line through the surface, in the middle of the chord that it makes itself.
 
-    Parameters
-    ----------
-    points
-        Centres, shape (n, 3), z up; the drum's axis is x = 0, z = radius.
+    ``points``: centres, shape (n, 3), z up; the drum's axis is x = 0, z = radius.
 
-    Raises
-    ------
-    NotAPileError
-        If there is no surface.
+    Raises NotAPileError if there is no surface.
     """
     offsets = points - np.array([0.0, 0.0, radius])
     middle = offsets.mean(axis=0)

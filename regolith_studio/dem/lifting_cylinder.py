@@ -24,6 +24,7 @@ from regolith_studio.dem.engine import (
 from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 
 LOOK = 0.5
 """Simulated time between two samples of the energies and speeds."""
@@ -65,45 +66,26 @@ class LiftingSettings:
     - ``snapshots``: number of snapshots of a run.
     """
 
-    max_fill_speed: float = field(
-        default=6.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
-    )
-    fill_friction: float = field(
-        default=0.5, metadata={"label": N_("Friction share while filling"), "minimum": 0.01, "maximum": 1.0}
-    )
-    rest_energy: float = field(
-        default=4e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
-    )
-    rest_time: float = field(
-        default=3.0, metadata={"label": N_("Time at rest"), "minimum": 0.1, "maximum": 1000.0}
-    )
-    max_rest_time: float = field(
-        default=60.0, metadata={"label": N_("Maximum duration"), "minimum": 1.0, "maximum": 1e5}
-    )
-    snapshots: int = field(default=120, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
+    max_fill_speed: float = setting(6.0, N_("Filling speed"), minimum=0.1, maximum=100.0)
+    fill_friction: float = setting(0.5, N_("Friction share while filling"), minimum=0.01, maximum=1.0)
+    rest_energy: float = setting(4e-4, N_("Energy at rest"), minimum=1e-9, maximum=0.1, decimals=9)
+    rest_time: float = setting(3.0, N_("Time at rest"), minimum=0.1, maximum=1000.0)
+    max_rest_time: float = setting(60.0, N_("Maximum duration"), minimum=1.0, maximum=1e5)
+    snapshots: int = setting(120, N_("Snapshots"), minimum=2, maximum=10_000)
 
 
 @dataclass(frozen=True)
 class SubstepSettings(LiftingSettings):
     """Numerics of a solver that takes small steps between two searches for contacts; times in sqrt(d/g).
 
-    Parameters
-    ----------
-    time_step
-        Between two searches for contacts; halved once or twice while particles move fast.
-    substeps
-        Small steps of the solver in a time step.
+    ``time_step``: between two searches for contacts; halved once or twice while particles move fast.
+    ``substeps``: small steps of the solver in a time step.
 
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Raises InputError if a value is out of its range.
     """
 
-    time_step: float = field(
-        default=0.05, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
-    )
-    substeps: int = field(default=8, metadata={"label": N_("Substeps"), "minimum": 1, "maximum": 100})
+    time_step: float = setting(0.05, N_("Time step"), minimum=1e-4, maximum=0.1, decimals=4)
+    substeps: int = setting(8, N_("Substeps"), minimum=1, maximum=100)
 
     def __post_init__(self) -> None:
         check_limits(self, "setting of the solver")
@@ -190,24 +172,14 @@ NOT_FILLED = (0.0, 0.0)
 class Course:
     """What a test does with the cylinder.
 
-    Parameters
-    ----------
-    phases
-        In their order; the first two fill the cylinder.
-    is_done
-        Whether a phase is over; the others end when the particles are at rest.
-    longest
-        Duration of a phase after which it ends in any case.
-    expected
-        Duration of the whole test.
-    interval
-        Between two snapshots.
-    move_walls
-        Sets walls and gravity after the solver has begun a phase.
-    in_plane
-        The particles as they are shown: z up.
-    checks
-        After the last phase.
+    - ``phases``: in their order; the first two fill the cylinder.
+    - ``is_done``: whether a phase is over; the others end when the particles are at rest.
+    - ``longest``: duration of a phase after which it ends in any case.
+    - ``expected``: duration of the whole test.
+    - ``interval``: between two snapshots.
+    - ``move_walls``: sets walls and gravity after the solver has begun a phase.
+    - ``in_plane``: the particles as they are shown: z up.
+    - ``checks``: after the last phase.
     """
 
     phases: tuple[str, ...]

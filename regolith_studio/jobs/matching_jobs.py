@@ -49,13 +49,6 @@ def match_materials(
 
     Each is a folder or archive of meshes, whose groups are fractions (those of the target count together), a
     table of descriptors or of length, width and thickness, or the name of a shipped card.
-
-    Raises
-    ------
-    FileError
-        If one cannot be read.
-    InputError
-        If they cannot be compared.
     """
     yield from compile_first("describe")
     chords = any(Path(name).suffix.lower() in SUFFIXES for name in (target, *candidates))

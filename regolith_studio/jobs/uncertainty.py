@@ -64,19 +64,9 @@ OTHER_ENGINES = ("rapier", "mujoco", "box3d")
 class UncertaintyRequest:
     """How the budget is made; picklable.
 
-    Parameters
-    ----------
-    base
-        Points of the design, a power of two; it has (steps + 2) times as many rows.
-    heaps
-        Seeds of each step; 0 for descriptors alone.
-    repose
-        Of the heaps.
-
-    Raises
-    ------
-    InputError
-        If a number cannot be used.
+    - ``base``: points of the design, a power of two; it has (steps + 2) times as many rows.
+    - ``heaps``: seeds of each step; 0 for descriptors alone.
+    - ``repose``: of the heaps.
     """
 
     base: int = 16
@@ -104,17 +94,8 @@ def uncertainty_steps(
     The folder holds what is known so far after the descriptors and after every heap. Rows and heaps that
     are known already are not computed again.
 
-    Parameters
-    ----------
-    workers
-        Tasks and heaps at the same time; they change no result.
-    resume
-        Whether rows of an interrupted run are taken up; heaps always are.
-
-    Raises
-    ------
-    InputError
-        If the grains are too few for an interval.
+    ``workers``: tasks and heaps at the same time; they change no result. ``resume``: whether rows of an
+    interrupted run are taken up; heaps always are.
     """
     with (
         StudyCheckpoint(folder / JOURNAL / f"{KIND}.sqlite", resume) as answers,
@@ -137,22 +118,11 @@ def measure_uncertainty(
 ) -> UncertaintyBudget:
     """What each step from the voxel to the angle costs, written into `folder`.
 
-    Parameters
-    ----------
-    source
-        Particles, or a scan of grey values or labels.
-    request
-        Size of the design and number of heaps.
-    workers
-        Processes at a time; 0 for one a core.
-    settings
-        Fields of :class:`~regolith_studio.jobs.uncertainty_chain.Chain`: ``grains``, ``coarsening``,
-        ``model``, ``n_representatives``, ``seed``.
-
-    Raises
-    ------
-    RegolithError
-        If the grains are too few for an interval, or the folder cannot be written.
+    - ``source``: particles, or a scan of grey values or labels.
+    - ``request``: size of the design and number of heaps.
+    - ``workers``: processes at a time; 0 for one a core.
+    - ``settings``: fields of :class:`~regolith_studio.jobs.uncertainty_chain.Chain`: ``grains``,
+      ``coarsening``, ``model``, ``n_representatives``, ``seed``.
     """
     given = source if isinstance(source, Volume) else tuple(source)
     steps = uncertainty_steps(

@@ -57,20 +57,13 @@ Levels = Mapping[str, int]
 class Chain:
     """What the budget is of; picklable.
 
-    Parameters
-    ----------
-    source
-        Particles, or a scan in memory or in a file.
-    grains
-        Settings from voxels to grains.
-    coarsening
-        Of the polyhedra, with l_max where it imitates fits.
-    model
-        Key of the model that particles are drawn from; none if representatives are measured grains.
-    n_representatives
-        Simulated shapes.
-    level, noise
-        Of a grey scan: where grains begin, and the noise of its denoised values.
+    - ``source``: particles, or a scan in memory or in a file.
+    - ``grains``: settings from voxels to grains.
+    - ``coarsening``: of the polyhedra, with l_max where it imitates fits.
+    - ``model``: key of the model that particles are drawn from; none if representatives are measured
+      grains.
+    - ``n_representatives``: simulated shapes.
+    - ``level``, ``noise``: of a grey scan: where grains begin, and the noise of its denoised values.
     """
 
     source: tuple[Particle, ...] | Volume | VolumeInput
@@ -191,13 +184,7 @@ class Chain:
         return self.choices[key][levels.get(key, 0)][1]
 
     def sample(self, levels: Levels) -> "GrainSample":
-        """The grains at the levels of the scan's steps.
-
-        Raises
-        ------
-        RegolithError
-            If there is none.
-        """
+        """The grains at the levels of the scan's steps."""
         if isinstance(self.source, tuple):
             return GrainSample.of(self, self.source, np.ones(len(self.source)))
         extraction, how, volume = self.grains.extraction, self.grains.segmentation, self.volume

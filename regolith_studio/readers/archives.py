@@ -34,14 +34,9 @@ _UNPACKED_PER_SECOND = 20e6
 class ArchiveMember:
     """A file in an archive on the disk.
 
-    Parameters
-    ----------
-    archive
-        The archive.
-    chain
-        Place of each archive in an archive, and of the file at the end.
-    name
-        Path from the archive on, with those of archives in it.
+    - ``archive``: the archive.
+    - ``chain``: place of each archive in an archive, and of the file at the end.
+    - ``name``: path from the archive on, with those of archives in it.
     """
 
     archive: Path
@@ -63,10 +58,7 @@ class ArchiveMember:
     def request(self, sandbox: Sandbox) -> SandboxMessage:
         """Its mesh, parsed by the sandbox.
 
-        Raises
-        ------
-        FileError
-            If it is refused, or its reader crashes or exceeds its limits.
+        Raises FileError if it is refused, or its reader crashes or exceeds its limits.
         """
         size = self.chain[-1].size
         if size > MAX_FILE_BYTES:
@@ -101,10 +93,7 @@ def archive_of(path: Path) -> Path | None:
 def archive_content(path: Path) -> ArchiveContent:
     """The meshes of an archive and of archives in it.
 
-    Raises
-    ------
-    FileError
-        With one sentence if it cannot be read.
+    Raises FileError with one sentence if it cannot be read.
     """
     size, state = checked_size(path, None), path.stat()
     return _content(path, size, state.st_mtime_ns)

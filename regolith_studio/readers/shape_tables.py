@@ -36,17 +36,10 @@ def read_shape_table(path: str | Path, unit: str = "um") -> ShapeTable:
     Length, width and thickness give also the ratios of Zingg, and the volume of the ellipsoid with these axes
     where the table has no volume.
 
-    Parameters
-    ----------
-    path
-        CSV, tab-separated or with semicolons; a row of names comes first.
-    unit
-        Unit of lengths whose column names none, such as ``Length (mm)`` does.
+    ``path``: CSV, tab-separated or with semicolons; a row of names comes first. ``unit``: unit of lengths
+    whose column names none, such as ``Length (mm)`` does.
 
-    Raises
-    ------
-    FileError
-        With one sentence if it cannot be read or has no such column.
+    Raises FileError with one sentence if it cannot be read or has no such column.
     """
     path, factor = Path(path), unit_factor(unit)
     answer = shared_sandbox().request("named-columns", path)

@@ -48,10 +48,7 @@ def listed_members(
 ) -> tuple[list[str], list[Place], list[str]]:
     """Names and places of the meshes and archives in an archive, and sentences about refused ones.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence if it is no archive, or one that is made to do harm.
+    Raises FileError with the second half of a sentence if it is no archive, or one that is made to do harm.
     """
     file, shift = _with_list(path, chain)
     try:
@@ -78,10 +75,7 @@ def listed_members(
 def member_bytes(path: Path, chain: Chain) -> bytes:
     """The bytes of a member.
 
-    Raises
-    ------
-    FileError
-        With the second half of a sentence if they are damaged.
+    Raises FileError with the second half of a sentence if they are damaged.
     """
     place = Place(*chain[-1])
     try:

@@ -126,21 +126,10 @@ def degree_picture(
 
     A degree at which the expansion has a negative radius keeps its place and says so.
 
-    Parameters
-    ----------
-    path
-        PNG file to write; nothing is written if not given.
-    level
-        Icosphere level of the surfaces.
+    ``path``: PNG file to write; nothing is written if not given. ``level``: icosphere level of the
+    surfaces.
 
-    Returns
-    -------
-    The picture, shape (height, width, 3), uint8.
-
-    Raises
-    ------
-    InputError
-        If a degree is negative or above that of the fit.
+    Returns the picture, shape (height, width, 3), uint8.
     """
     shown: list[tuple[Mesh | None, str]] = [(particle, N_("Particle"))]
     shown += [(surface, degree_title(fit, degree)) for degree, surface in gallery(fit, degrees, level)]

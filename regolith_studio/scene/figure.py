@@ -37,26 +37,16 @@ def three_views(
 ) -> Picture:
     """Particle, fit and polyhedron side by side under one camera pose.
 
-    Parameters
-    ----------
-    particle, fit, polyhedron
-        In the particle's frame, in micrometres; a :class:`CoarseningResult` knows where its polyhedron lies.
-    titles
-        One line over each view.
-    path
-        PNG file to write; nothing is written if not given.
-    direction
-        A key of :data:`regolith_studio.scene.cameras.DIRECTIONS`.
-    scale
-        Whole factor on the size in pixels, of letters and lines too.
-    pose
-        Where the cameras stand, instead of a standard direction.
-    transparent
-        Whether the background is left out; the picture then has four channels.
+    - ``particle``, ``fit``, ``polyhedron``: in the particle's frame, in micrometres; a
+      :class:`CoarseningResult` knows where its polyhedron lies.
+    - ``titles``: one line over each view.
+    - ``path``: PNG file to write; nothing is written if not given.
+    - ``direction``: a key of :data:`regolith_studio.scene.cameras.DIRECTIONS`.
+    - ``scale``: whole factor on the size in pixels, of letters and lines too.
+    - ``pose``: where the cameras stand, instead of a standard direction.
+    - ``transparent``: whether the background is left out; the picture then has four channels.
 
-    Returns
-    -------
-    The picture, shape (height, width, 3 or 4), uint8.
+    Returns the picture, shape (height, width, 3 or 4), uint8.
     """
     plotter_setup.choose_off_screen_window()
     width, height = (scale * each for each in VIEW_SIZE)

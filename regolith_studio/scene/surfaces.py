@@ -268,16 +268,9 @@ def signed_distances(points: FloatArray, surface: Mesh) -> FloatArray:
     The nearest of a few triangles whose middles are nearest; exact for surfaces of evenly sized
     triangles, as fits and contoured scans are.
 
-    Parameters
-    ----------
-    points
-        Shape (n, 3).
-    surface
-        Closed, outward oriented.
+    ``points``: shape (n, 3). ``surface``: closed, outward oriented.
 
-    Returns
-    -------
-    Shape (n,), in the unit of the points.
+    Returns shape (n,), in the unit of the points.
     """
     count = min(NEAREST, len(surface.faces))
     middles = surface.triangles.mean(axis=1)

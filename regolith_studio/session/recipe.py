@@ -202,12 +202,8 @@ class DatasetRequest:
 class Outputs(Strict):
     """What is written below the output folder.
 
-    Parameters
-    ----------
-    chords
-        Whether the descriptors have width and thickness by chords, which take longer.
-    dataset_by_group
-        One dataset for each group, in folders of ``dataset``, with a manifest.
+    ``chords``: whether the descriptors have width and thickness by chords, which take longer.
+    ``dataset_by_group``: one dataset for each group, in folders of ``dataset``, with a manifest.
     """
 
     descriptors: bool = True

@@ -33,14 +33,9 @@ _TAYLOR_TERMS = 16
 def nearest_over_rotations(measured: FloatArray, drawn: FloatArray) -> tuple[FloatArray, IntArray]:
     """Distance from each drawn particle to the nearest measured one over rotations, and which it is.
 
-    Parameters
-    ----------
-    measured, drawn
-        Rows of ``canonical``, shapes (n, k) and (m, k).
+    ``measured``, ``drawn``: rows of ``canonical``, shapes (n, k) and (m, k).
 
-    Returns
-    -------
-    Root-mean-square differences of the radii, and indices of measured particles, shapes (m,).
+    Returns root-mean-square differences of the radii, and indices of measured particles, shapes (m,).
     """
     nearest = [_nearest(measured, row) for row in drawn]
     return np.array([distance for distance, _ in nearest]), np.array(
@@ -146,18 +141,11 @@ def resampled_distances(
 ) -> tuple[FloatArray, FloatArray]:
     """:func:`relative_wasserstein` and :func:`kolmogorov_smirnov` for many weightings of the same values.
 
-    Parameters
-    ----------
-    measured, drawn
-        Shapes (n,) and (m,).
-    weights, drawn_weights
-        A row for each weighting, shapes (b, n) and (b, m).
-    scale
-        Weights of the measured mean whose share the first distance is, shape (n,).
+    - ``measured``, ``drawn``: shapes (n,) and (m,).
+    - ``weights``, ``drawn_weights``: a row for each weighting, shapes (b, n) and (b, m).
+    - ``scale``: weights of the measured mean whose share the first distance is, shape (n,).
 
-    Returns
-    -------
-    Both distances of each weighting, shapes (b,).
+    Returns both distances of each weighting, shapes (b,).
     """
     places = np.concatenate([measured, drawn])
     order = np.argsort(places, kind="stable")

@@ -11,7 +11,7 @@ in colatitude and longitude; between their nodes Lagrange's cubic holds in both.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from math import isqrt
 from typing import Any, ClassVar, Self
@@ -25,6 +25,7 @@ from regolith_studio.geometry.kernels import kernel
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import ring_basis, sphere_grid
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.protocol import amplitudes_of
@@ -197,14 +198,9 @@ class MappedSurfaces:
 def roughness_gain(mapped: FloatArray, measured: FloatArray) -> FloatArray:
     """A factor for each degree with which mapped particles have the mean power of the measured ones.
 
-    Parameters
-    ----------
-    mapped, measured
-        Coefficients of the radii of the same particles, shapes (n, (l_max + 1)^2).
+    ``mapped``, ``measured``: coefficients of the radii of the same particles, shapes (n, (l_max + 1)^2).
 
-    Returns
-    -------
-    Shape (l_max + 1,); ones for the lowest degrees.
+    Returns shape (l_max + 1,); ones for the lowest degrees.
     """
     ratio = np.sqrt(_power(measured) / np.maximum(_power(mapped), 1e-300))
     ratio[:MIN_MATCHED_DEGREE] = 1.0
@@ -228,14 +224,8 @@ class SurfaceSettings:
     """
 
     l_max: int = 30
-    size_jitter: float = field(
-        default=0.02,
-        metadata={
-            "label": N_("Size jitter"),
-            "maximum": 1.0,
-            "decimals": 3,
-            "tip": N_("Deviation in ln r_eq."),
-        },
+    size_jitter: float = setting(
+        0.02, N_("Size jitter"), N_("Deviation in ln r_eq."), maximum=1.0, decimals=3
     )
 
 

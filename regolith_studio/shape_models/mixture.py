@@ -8,7 +8,7 @@ directions within a degree are even in an isotropic field. ::
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -19,6 +19,7 @@ from scipy.special import logsumexp
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 
 MAX_STEPS = 300
 TOLERANCE = 1e-7
@@ -44,23 +45,15 @@ class MixtureSettings:
     """
 
     l_max: int = 10
-    n_components: int = field(
-        default=0,
-        metadata={
-            "label": N_("Components"),
-            "maximum": 50,
-            "tip": N_("0 for the number with the lowest Bayesian information criterion."),
-        },
+    n_components: int = setting(
+        0,
+        N_("Components"),
+        N_("0 for the number with the lowest Bayesian information criterion."),
+        maximum=50,
     )
-    max_components: int = field(
-        default=8,
-        metadata={"label": N_("At most"), "minimum": 1, "maximum": 50, "tip": N_("Highest number tried.")},
-    )
-    n_starts: int = field(
-        default=2,
-        metadata={"label": N_("Starts"), "minimum": 1, "maximum": 50, "tip": N_("For each number.")},
-    )
-    seed: int = field(default=0, metadata={"label": N_("Seed of starts")})
+    max_components: int = setting(8, N_("At most"), N_("Highest number tried."), minimum=1, maximum=50)
+    n_starts: int = setting(2, N_("Starts"), N_("For each number."), minimum=1, maximum=50)
+    seed: int = setting(0, N_("Seed of starts"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,19 +168,12 @@ def chosen_mixture(
 ) -> tuple[Mixture, tuple[float, ...]]:
     """The mixture with the number of parts that was asked for, or the lowest criterion; and the criterion.
 
-    Parameters
-    ----------
-    sizes, powers
-        As for :func:`fit_mixture`.
+    ``sizes``, ``powers``: as for :func:`fit_mixture`.
 
-    Returns
-    -------
-    The mixture, and the criterion for 1, 2, ... parts; nothing if the number was given.
+    Returns the mixture, and the criterion for 1, 2, ... parts; nothing if the number was given.
 
-    Raises
-    ------
-    InputError
-        If there are fewer than four particles for each part, or there is nothing to tell parts by.
+    Raises InputError if there are fewer than four particles for each part, or there is nothing to tell
+    parts by.
     """
     if settings.l_max < 1:
         raise InputError(

@@ -43,12 +43,8 @@ MAX_HEAPS = 10_000
 class ChainStep:
     """A step of the chain.
 
-    Parameters
-    ----------
-    levels
-        What it is set to, the present setting first; all are equally probable.
-    missing
-        Why it is not counted, if it is not.
+    ``levels``: what it is set to, the present setting first; all are equally probable. ``missing``: why it
+    is not counted, if it is not.
     """
 
     key: str
@@ -60,10 +56,7 @@ class ChainStep:
 def check_count(n_grains: int) -> None:
     """Refuse samples that are too small.
 
-    Raises
-    ------
-    InputError
-        If there are fewer than :data:`MIN_GRAINS` grains.
+    Raises InputError if there are fewer than :data:`MIN_GRAINS` grains.
     """
     if n_grains < MIN_GRAINS:
         raise InputError(
@@ -75,10 +68,7 @@ def check_count(n_grains: int) -> None:
 def saltelli_rows(steps: Sequence[ChainStep], base: int, seed: int) -> IntArray:
     """Levels of the steps, shape (d + 2, base, d): samples A and B, and A with each column of B.
 
-    Parameters
-    ----------
-    base
-        A power of two.
+    ``base``: a power of two.
     """
     d = len(steps)
     unit = Sobol(2 * d, scramble=True, seed=np.random.default_rng(seed)).random(base)
@@ -104,16 +94,10 @@ def sobol_shares(results: FloatArray) -> tuple[FloatArray, FloatArray]:
 class DescriptorBudget:
     """Means of descriptors over a design.
 
-    Parameters
-    ----------
-    steps
-        Those that vary.
-    nominal
-        Means of the present settings, in the order of :data:`OUTPUTS`.
-    results
-        Of all rows of :func:`saltelli_rows`, shape (d + 2, n, outputs); NaN where not known.
-    n_grains
-        Of the present settings.
+    - ``steps``: those that vary.
+    - ``nominal``: means of the present settings, in the order of :data:`OUTPUTS`.
+    - ``results``: of all rows of :func:`saltelli_rows`, shape (d + 2, n, outputs); NaN where not known.
+    - ``n_grains``: of the present settings.
     """
 
     steps: tuple[ChainStep, ...]
@@ -166,17 +150,11 @@ class DescriptorBudget:
 class AngleEffect:
     """What a step does to the angle, in degrees.
 
-    Parameters
-    ----------
-    change, low, high
-        Mean difference of heaps of the same seeds, and its interval; of the bootstrap the standard deviation
-        that it adds.
-    n
-        Pairs of heaps.
-    decided
-        Whether the interval excludes 0.
-    heaps_needed
-        Pairs that would decide it if it is as large as it seems; none if it is decided.
+    - ``change``, ``low``, ``high``: mean difference of heaps of the same seeds, and its interval; of the
+      bootstrap the standard deviation that it adds.
+    - ``n``: pairs of heaps.
+    - ``decided``: whether the interval excludes 0.
+    - ``heaps_needed``: pairs that would decide it if it is as large as it seems; none if it is decided.
     """
 
     step: ChainStep
@@ -199,16 +177,10 @@ class AngleEffect:
 class AngleBudget:
     """Angles of heaps, in degrees; NaN where there is no pile.
 
-    Parameters
-    ----------
-    steps
-        Those that were changed, one at a time.
-    nominal
-        Of the present settings, by seed.
-    changed
-        Of each step, by seed, by its key.
-    notes
-        On the engines.
+    - ``steps``: those that were changed, one at a time.
+    - ``nominal``: of the present settings, by seed.
+    - ``changed``: of each step, by seed, by its key.
+    - ``notes``: on the engines.
     """
 
     steps: tuple[ChainStep, ...]
@@ -304,12 +276,7 @@ def _first(enough: Any, n: int) -> int:
 class UncertaintyBudget:
     """What is known of descriptors and angle.
 
-    Parameters
-    ----------
-    not_counted
-        Steps that the input lacks, with the reasons.
-    recipe
-        Settings, as JSON.
+    ``not_counted``: steps that the input lacks, with the reasons. ``recipe``: settings, as JSON.
     """
 
     descriptors: DescriptorBudget

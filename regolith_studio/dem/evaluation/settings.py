@@ -1,10 +1,11 @@
 """Parameters and limits of the evaluation."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 
 
 @dataclass(frozen=True)
@@ -46,48 +47,19 @@ class EvaluationSettings:
         If a value is out of its range.
     """
 
-    gap: float = field(default=1.0, metadata={"label": N_("Gap, in mean d"), "minimum": 0.1, "maximum": 10.0})
-    bin_width: float = field(
-        default=0.5, metadata={"label": N_("Bin width, in mean d"), "minimum": 0.05, "maximum": 3.0}
-    )
-    median_window: int = field(
-        default=5, metadata={"label": N_("Rolling median"), "minimum": 1, "maximum": 101}
-    )
-    cut_top: float = field(default=0.15, metadata={"label": N_("Upper cut"), "minimum": 0.0, "maximum": 0.45})
-    cut_bottom: float = field(
-        default=0.15, metadata={"label": N_("Lower cut"), "minimum": 0.0, "maximum": 0.45}
-    )
-    toe: float = field(
-        default=1.5,
-        metadata={"label": N_("Minimum height of the cut, in mean d"), "minimum": 0.0, "maximum": 10.0},
-    )
-    slab: float = field(
-        default=0.0,
-        metadata={
-            "label": N_("Slice, in mean d"),
-            "minimum": 0.0,
-            "maximum": 1000.0,
-            "tip": N_("0: whole pile"),
-        },
-    )
-    grain_correction: bool = field(
-        default=True, metadata={"label": N_("Correct for grain size"), "minimum": False, "maximum": True}
-    )
-    azimuths: int = field(default=12, metadata={"label": N_("Sections"), "minimum": 2, "maximum": 360})
-    min_points: int = field(
-        default=4, metadata={"label": N_("Points per flank"), "minimum": 3, "maximum": 1000}
-    )
-    min_particles: int = field(
-        default=150,
-        metadata={"label": N_("Minimum number of particles"), "minimum": 10, "maximum": 1_000_000},
-    )
-    min_height: float = field(
-        default=2.5,
-        metadata={"label": N_("Minimum height of the heap, in mean d"), "minimum": 0.0, "maximum": 100.0},
-    )
-    confidence: float = field(
-        default=0.95, metadata={"label": N_("Confidence"), "minimum": 0.5, "maximum": 0.999}
-    )
+    gap: float = setting(1.0, N_("Gap, in mean d"), minimum=0.1, maximum=10.0)
+    bin_width: float = setting(0.5, N_("Bin width, in mean d"), minimum=0.05, maximum=3.0)
+    median_window: int = setting(5, N_("Rolling median"), minimum=1, maximum=101)
+    cut_top: float = setting(0.15, N_("Upper cut"), minimum=0.0, maximum=0.45)
+    cut_bottom: float = setting(0.15, N_("Lower cut"), minimum=0.0, maximum=0.45)
+    toe: float = setting(1.5, N_("Minimum height of the cut, in mean d"), minimum=0.0, maximum=10.0)
+    slab: float = setting(0.0, N_("Slice, in mean d"), N_("0: whole pile"), minimum=0.0, maximum=1000.0)
+    grain_correction: bool = setting(True, N_("Correct for grain size"), minimum=False, maximum=True)
+    azimuths: int = setting(12, N_("Sections"), minimum=2, maximum=360)
+    min_points: int = setting(4, N_("Points per flank"), minimum=3, maximum=1000)
+    min_particles: int = setting(150, N_("Minimum number of particles"), minimum=10, maximum=1_000_000)
+    min_height: float = setting(2.5, N_("Minimum height of the heap, in mean d"), minimum=0.0, maximum=100.0)
+    confidence: float = setting(0.95, N_("Confidence"), minimum=0.5, maximum=0.999)
 
     def __post_init__(self) -> None:
         check_limits(self, "evaluation setting")

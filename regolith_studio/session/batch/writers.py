@@ -300,13 +300,7 @@ MANIFEST = "manifest.json"
 
 
 def write_library(folder: Path, batch: Batch, name: str, provenance: Provenance) -> None:
-    """Write a dataset for each group, and ``manifest.json`` with the hash of each one's document.
-
-    Raises
-    ------
-    DatasetError
-        If there is no shape, or something cannot be written.
-    """
+    """Write a dataset for each group, and ``manifest.json`` with the hash of each one's document."""
     members: dict[str, list[int]] = {}
     for record in batch.checkpoint.records(blobs=False):
         if record.values.get("shape"):

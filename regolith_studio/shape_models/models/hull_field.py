@@ -12,7 +12,7 @@ shapes of its ends.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,6 +22,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 from regolith_studio.shape_models.calibration import (
     CalibrationOffset,
     CalibrationTarget,
@@ -79,9 +80,7 @@ class HullFieldSettings:
     """
 
     l_max: int = 30
-    size_law: str = field(
-        default="kernel", metadata={"label": N_("Size distribution"), "choices": tuple(SIZE_LAWS)}
-    )
+    size_law: str = setting("kernel", N_("Size distribution"), choices=tuple(SIZE_LAWS))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ brings the elongated particles that an isotropic field in r cannot make.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,6 +16,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.protocol import checked_amplitudes
 from regolith_studio.shape_models.sample import Sample, directed, log_shapes
@@ -45,11 +46,9 @@ class LogFieldSettings:
     """
 
     l_max: int = 10
-    spectrum: str = field(default="resampled", metadata={"label": N_("Spectrum"), "choices": SPECTRA})
-    size_law: str = field(
-        default="kernel", metadata={"label": N_("Size distribution"), "choices": tuple(SIZE_LAWS)}
-    )
-    size_dependent: bool = field(default=True, metadata={"label": N_("Spectrum depends on size")})
+    spectrum: str = setting("resampled", N_("Spectrum"), choices=SPECTRA)
+    size_law: str = setting("kernel", N_("Size distribution"), choices=tuple(SIZE_LAWS))
+    size_dependent: bool = setting(True, N_("Spectrum depends on size"))
 
 
 @dataclass(frozen=True, eq=False)

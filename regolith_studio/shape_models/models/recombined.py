@@ -17,7 +17,7 @@ the aspect ratio of the minimum-volume box lies half-way between those of the tw
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import Any, ClassVar
@@ -32,6 +32,7 @@ from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, harmonics, sphere_grid
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import CHUNK
 from regolith_studio.shape_models.convex_hull import hull_grid
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
@@ -107,18 +108,11 @@ class SurfaceForms:
     ) -> tuple[FloatArray, FloatArray]:
         """Surfaces turned on the sphere of inertia and stretched along the axes to other forms.
 
-        Parameters
-        ----------
-        picks
-            Whose surfaces, shape (k,).
-        turns
-            Rotations, shape (k, 3, 3).
-        wanted
-            Forms, shape (k, 3).
+        - ``picks``: whose surfaces, shape (k,).
+        - ``turns``: rotations, shape (k, 3, 3).
+        - ``wanted``: forms, shape (k, 3).
 
-        Returns
-        -------
-        Linear maps of determinant one (k, 3, 3), and ln(s / (1 - s)) of the sphericities (k,).
+        Returns linear maps of determinant one (k, 3, 3), and ln(s / (1 - s)) of the sphericities (k,).
         """
         turned, edges = (
             np.empty((len(picks), *self.vertices.shape[1:]), dtype=np.float32),
@@ -175,16 +169,10 @@ def mesh_features(rows: FloatArray, axes: FloatArray | None = None) -> FloatArra
 
     The aspect ratio is that of the smallest of 27 boxes about the principal axes.
 
-    Parameters
-    ----------
-    rows
-        Coefficients of radius functions, shape (n, (l_max + 1)^2).
-    axes
-        Their principal axes as columns, shape (n, 3, 3), where they are known.
+    ``rows``: coefficients of radius functions, shape (n, (l_max + 1)^2). ``axes``: their principal axes as
+    columns, shape (n, 3, 3), where they are known.
 
-    Returns
-    -------
-    Shape (n, 3).
+    Returns shape (n, 3).
     """
     known = principal_axes(rows).axes if axes is None else axes
     batches = range(0, len(rows), _BATCH)
@@ -241,21 +229,14 @@ class RecombinedSettings(SurfaceSettings):
         Surfaces that are tried for each particle.
     """
 
-    n_neighbours: int = field(
-        default=20,
-        metadata={
-            "label": N_("Neighbours"),
-            "minimum": 1,
-            "tip": N_("Number of particles with a similar hull ratio whose surfaces may be used."),
-        },
+    n_neighbours: int = setting(
+        20,
+        N_("Neighbours"),
+        N_("Number of particles with a similar hull ratio whose surfaces may be used."),
+        minimum=1,
     )
-    n_candidates: int = field(
-        default=32,
-        metadata={
-            "label": N_("Surfaces tried"),
-            "minimum": 1,
-            "tip": N_("The one with the nearest sphericity is kept."),
-        },
+    n_candidates: int = setting(
+        32, N_("Surfaces tried"), N_("The one with the nearest sphericity is kept."), minimum=1
     )
 
 

@@ -17,7 +17,7 @@ the sample, take ``log_field``.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -30,6 +30,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.coefficients import orders
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import CHUNK
 from regolith_studio.shape_models.mapped_surfaces import (
     SurfaceSampler,
@@ -63,25 +64,18 @@ class SampleMatchedSettings(SurfaceSettings):
         the measured particles as other particles of the material are; without it draws are near copies.
     """
 
-    turn: float = field(
-        default=0.45,
-        metadata={
-            "label": N_("Rotation [rad]"),
-            "maximum": 2.0,
-            "step": 0.1,
-            "decimals": 2,
-            "tip": N_("Mean rotation of a round particle; elongated ones are rotated less."),
-        },
+    turn: float = setting(
+        0.45,
+        N_("Rotation [rad]"),
+        N_("Mean rotation of a round particle; elongated ones are rotated less."),
+        maximum=2.0,
+        step=0.1,
+        decimals=2,
     )
-    n_neighbours: int = field(
-        default=20,
-        metadata={
-            "label": N_("Neighbours"),
-            "minimum": 1,
-            "tip": N_("Nearest particles whose ellipsoid may be used."),
-        },
+    n_neighbours: int = setting(
+        20, N_("Neighbours"), N_("Nearest particles whose ellipsoid may be used."), minimum=1
     )
-    mirrored: bool = field(default=True, metadata={"label": N_("Mirror images")})
+    mirrored: bool = setting(True, N_("Mirror images"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 import os
 import shutil
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distribution
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,6 +11,7 @@ from pathlib import Path
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.dem.engine import Availability
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 
 
 @dataclass(frozen=True)
@@ -30,21 +31,13 @@ class LammpsSettings:
     Raises InputError if a value is out of its range.
     """
 
-    spheres: int = field(
-        default=12, metadata={"label": N_("Spheres per particle"), "minimum": 1, "maximum": 64}
-    )
-    max_error: float = field(
-        default=0.0, metadata={"label": N_("Error of the spheres"), "minimum": 0.0, "maximum": 0.9}
-    )
-    max_stiffness: float = field(
-        default=4e4, metadata={"label": N_("Young's modulus / ρgd"), "minimum": 0.0, "maximum": 1e12}
-    )
-    step_share: float = field(
-        default=0.15, metadata={"label": N_("Step, in Rayleigh's time"), "minimum": 0.01, "maximum": 0.5}
-    )
-    rest: float = field(default=25.0, metadata={"label": N_("Time at rest"), "minimum": 1.0, "maximum": 1e5})
-    snapshots: int = field(default=80, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
-    restarts: int = field(default=4, metadata={"label": N_("Restarts"), "minimum": 0, "maximum": 20})
+    spheres: int = setting(12, N_("Spheres per particle"), minimum=1, maximum=64)
+    max_error: float = setting(0.0, N_("Error of the spheres"), minimum=0.0, maximum=0.9)
+    max_stiffness: float = setting(4e4, N_("Young's modulus / ρgd"), minimum=0.0, maximum=1e12)
+    step_share: float = setting(0.15, N_("Step, in Rayleigh's time"), minimum=0.01, maximum=0.5)
+    rest: float = setting(25.0, N_("Time at rest"), minimum=1.0, maximum=1e5)
+    snapshots: int = setting(80, N_("Snapshots"), minimum=2, maximum=10_000)
+    restarts: int = setting(4, N_("Restarts"), minimum=0, maximum=20)
 
     def __post_init__(self) -> None:
         check_limits(self, "LAMMPS setting")

@@ -1,10 +1,11 @@
 """Settings of the MuJoCo engine."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.dem.lifting_cylinder import LiftingSettings
 from regolith_studio.messages import N_
+from regolith_studio.settings import setting
 
 
 @dataclass(frozen=True)
@@ -18,16 +19,10 @@ class MujocoSettings(LiftingSettings):
     Raises InputError if a value is out of its range.
     """
 
-    time_step: float = field(
-        default=0.025, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
-    )
-    contact_steps: float = field(
-        default=2.0, metadata={"label": N_("Contact time in steps"), "minimum": 2.0, "maximum": 20.0}
-    )
-    iterations: int = field(default=25, metadata={"label": N_("Iterations"), "minimum": 1, "maximum": 1000})
-    tolerance: float = field(
-        default=1e-5, metadata={"label": N_("Tolerance"), "minimum": 1e-12, "maximum": 1e-2, "decimals": 12}
-    )
+    time_step: float = setting(0.025, N_("Time step"), minimum=1e-4, maximum=0.1, decimals=4)
+    contact_steps: float = setting(2.0, N_("Contact time in steps"), minimum=2.0, maximum=20.0)
+    iterations: int = setting(25, N_("Iterations"), minimum=1, maximum=1000)
+    tolerance: float = setting(1e-5, N_("Tolerance"), minimum=1e-12, maximum=1e-2, decimals=12)
 
     def __post_init__(self) -> None:
         check_limits(self, "MuJoCo setting")

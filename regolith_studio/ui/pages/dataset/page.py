@@ -161,10 +161,7 @@ class DatasetPage(PageWidget):
     def build_in(self, folder: Path, overwrite: bool = False, exports: Path | None = None) -> None:
         """Coarsen the representatives, which are found where there are none, and write the dataset.
 
-        Parameters
-        ----------
-        exports
-            Folder that the selected formats are written into afterwards; by default none are.
+        ``exports``: folder that the selected formats are written into afterwards; by default none are.
         """
         session, survey_now = self._context.session, self._survey
         if self.sizes.sizing() is None:

@@ -110,14 +110,10 @@ class CoarseningPanel(QWidget):
     def show_sufficient(self, count: int, *, saturated: bool, now: int, reason: str) -> None:
         """Show the number of facets from which on nothing is gained, and offer it.
 
-        Parameters
-        ----------
-        saturated
-            Whether more facets than `count` were tried in vain; else the errors still fall there.
-        now
-            The chosen number.
-        reason
-            Why more are not needed; the tool tip.
+        - ``saturated``: whether more facets than `count` were tried in vain; else the errors still fall
+          there.
+        - ``now``: the chosen number.
+        - ``reason``: why more are not needed; the tool tip.
         """
         self._sufficient = count
         if not saturated:

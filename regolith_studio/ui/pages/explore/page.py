@@ -101,12 +101,7 @@ LANE = "facets"
 class FacetSearch(QObject):
     """Coarsens the particle at several numbers of facets, and offers the one that is enough.
 
-    Parameters
-    ----------
-    context
-        Of the page.
-    panel
-        Has the button; shows the answer.
+    ``context``: of the page. ``panel``: has the button; shows the answer.
     """
 
     def __init__(self, context: PageContext, panel: CoarseningPanel, parent: QObject) -> None:

@@ -164,13 +164,7 @@ class LossPanel(QWidget):
         return bool(self.value()["weights"] != self._known[self._chosen].weights)
 
     def save_as(self, name: str) -> None:
-        """Save the present weights as an own preset.
-
-        Raises
-        ------
-        RegolithError
-            If the name cannot be taken or the file cannot be written.
-        """
+        """Save the present weights as an own preset."""
         now = self.value()
         self._own.save(name, {"preset": now["preset"], "weights": dict(now["weights"])})
         self._list()

@@ -46,12 +46,7 @@ SAVED = {
 class PictureExport(QObject):
     """Asks for a file and saves views or an animation.
 
-    Parameters
-    ----------
-    context
-        Of the page.
-    three_views
-        The views.
+    ``context``: of the page. ``three_views``: the views.
     """
 
     def __init__(self, context: PageContext, three_views: ThreeViews, parent: QWidget) -> None:

@@ -36,10 +36,7 @@ WAIT = N_("Simulated annealing is running …")
 class AnnealingView(QWidget):
     """Two polyhedra, text and formulas of a step, and three plots.
 
-    Parameters
-    ----------
-    kind
-        ``live`` or ``image``, of the views.
+    ``kind``: ``live`` or ``image``, of the views.
     """
 
     def __init__(self, kind: str) -> None:

@@ -46,12 +46,7 @@ def lesson_columns(
 ) -> QSplitter:
     """All plots stay in sight; only texts are scrolled where they are too long.
 
-    Parameters
-    ----------
-    name
-        Of the borders in the preferences.
-    under_texts
-        A plot below the texts.
+    ``name``: of the borders in the preferences. ``under_texts``: a plot below the texts.
     """
     column_of_texts = QWidget()
     column = QVBoxLayout(column_of_texts)
@@ -85,10 +80,7 @@ WAIT = N_("Fitting the particle …")
 class DegreesView(QWidget):
     """Particle and fit, text and series at a degree, and the errors up to it.
 
-    Parameters
-    ----------
-    kind
-        ``live`` or ``image``, of the views.
+    ``kind``: ``live`` or ``image``, of the views.
     """
 
     def __init__(self, kind: str) -> None:
@@ -205,10 +197,7 @@ DEGREE = 10
 class FieldView(QWidget):
     """Sphere and particle coloured by the field, and the spectrum editor.
 
-    Parameters
-    ----------
-    context
-        Of the page; what the spectrum makes is drawn while it is dragged.
+    ``context``: of the page; what the spectrum makes is drawn while it is dragged.
     """
 
     seedChanged = Signal(int)  # noqa: N815

@@ -24,14 +24,9 @@ USUAL_SPEED = 2.0
 class PlaybackBar(QWidget):
     """Selects one of several steps, manually or by a timer.
 
-    Parameters
-    ----------
-    name
-        Prefix of the object names.
-    noun
-        What one step is called, such as ``step``.
-    is_ready
-        Whether a step can be shown at once; while it plays, it waits for that.
+    - ``name``: prefix of the object names.
+    - ``noun``: what one step is called, such as ``step``.
+    - ``is_ready``: whether a step can be shown at once; while it plays, it waits for that.
     """
 
     stepChanged = Signal(int)  # noqa: N815

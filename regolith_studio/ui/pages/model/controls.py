@@ -81,14 +81,10 @@ class SourceControls(QWidget):
     def show_kind(self, brings_model: str, max_degree: int, words: str) -> None:
         """Describe the source.
 
-        Parameters
-        ----------
-        brings_model
-            Key of the model that a card or file brings; empty for a sample, to which any can be fitted.
-        max_degree
-            Highest degree of the source.
-        words
-            A sentence.
+        - ``brings_model``: key of the model that a card or file brings; empty for a sample, to which any
+          can be fitted.
+        - ``max_degree``: highest degree of the source.
+        - ``words``: a sentence.
         """
         self.findings.setText(words)
         self.model.setEnabled(not brings_model)
@@ -286,13 +282,7 @@ class DrawControls(QWidget):
 def request_from(
     source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str
 ) -> GenerationRequest:
-    """The request with the values of the controls.
-
-    Raises
-    ------
-    InputError
-        If a value is invalid.
-    """
+    """The request with the values of the controls."""
     bounds = drawing["size_range"]
     if bounds is not None and not bounds[0] < bounds[1]:
         raise InputError(

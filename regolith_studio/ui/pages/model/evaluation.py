@@ -61,10 +61,7 @@ AXES = {
 class PanelGrid(QWidget):
     """The panels of one figure as plots in a grid, with one legend.
 
-    Parameters
-    ----------
-    name
-        Of the figure, a key of :data:`AXES`.
+    ``name``: of the figure, a key of :data:`AXES`.
     """
 
     def __init__(self, name: str) -> None:

@@ -102,14 +102,9 @@ OPEN_PARTICLES = "open"
 class SourceKind:
     """Description of a source for the controls.
 
-    Parameters
-    ----------
-    brings_model
-        Key of the model that comes with it; empty for measured particles.
-    max_degree
-        Highest degree.
-    words
-        One sentence.
+    - ``brings_model``: key of the model that comes with it; empty for measured particles.
+    - ``max_degree``: highest degree.
+    - ``words``: one sentence.
     """
 
     brings_model: str
@@ -160,13 +155,7 @@ class SourceBox:
                 return SourceKind(content.key, content.l_max, words)
 
     def origin(self, key: str) -> ModelOrigin:
-        """The source as a job takes it.
-
-        Raises
-        ------
-        InputError
-            If no particle is open.
-        """
+        """The source as a job takes it."""
         if key == OPEN_PARTICLES:
             particles = self._session.open_particles
             if not particles:

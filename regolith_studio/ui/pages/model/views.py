@@ -154,12 +154,8 @@ class LiveShape(QWidget):
     def show_mesh(self, mesh: Mesh | None, detail: str = "", again: bool = False) -> None:
         """Show a drawn particle.
 
-        Parameters
-        ----------
-        detail
-            Second line of the view's title.
-        again
-            Whether to fit the view, because it is another particle.
+        ``detail``: second line of the view's title. ``again``: whether to fit the view, because it is
+        another particle.
         """
         self.another.setEnabled(mesh is not None)
         self.reset.setEnabled(self.spectrum.is_changed())

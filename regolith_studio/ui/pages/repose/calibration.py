@@ -87,13 +87,7 @@ class CalibrationPanel(RunPanel):
         self._draw()
 
     def request(self, dataset: Path | None, request: ReposeRequest) -> ReposeCalibrationRequest:
-        """The request of the panel, with the dataset and all other values of a run.
-
-        Raises
-        ------
-        InputError
-            If a value is invalid, or there is no dataset.
-        """
+        """The request of the panel, with the dataset and all other values of a run."""
         if dataset is None:
             raise InputError(N_("There is no dataset yet: open or build one first."))
         key = str(self.key.currentData())

@@ -94,10 +94,7 @@ class LimitsStrip(QWidget):
     def show_scale(self, scale: CaseScale | None, seconds: Callable[[int], float] | None = None) -> None:
         """Show the values of a case.
 
-        Parameters
-        ----------
-        seconds
-            Estimated time of a run with a number of particles; without it there are no buttons.
+        ``seconds``: estimated time of a run with a number of particles; without it there are no buttons.
         """
         self._scale = scale
         values = (None,) * len(ROWS) if scale is None else scale.values()

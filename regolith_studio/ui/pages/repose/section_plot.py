@@ -30,18 +30,11 @@ RIGHT_SIDE = N_("right flank: {z:.3g} mm, {angle:.1f}°")
 class HeapSection:
     """A vertical section of particles at rest.
 
-    Parameters
-    ----------
-    pile
-        The particles.
-    azimuth
-        Degrees from the x axis.
-    base
-        Level of the plate.
-    profile, section
-        The surface and what was fitted to it, where there is any.
-    half_width
-        Of the interval of the angle in degrees; 0 for none.
+    - ``pile``: the particles.
+    - ``azimuth``: degrees from the x axis.
+    - ``base``: level of the plate.
+    - ``profile``, ``section``: the surface and what was fitted to it, where there is any.
+    - ``half_width``: of the interval of the angle in degrees; 0 for none.
     """
 
     pile: ParticleState

@@ -123,13 +123,7 @@ class SetupPanel(QWidget):
             self.filling.setCurrentIndex(max(0, self.filling.findData(chosen)))
 
     def request(self) -> ReposeRequest:
-        """The request with the values of the panel.
-
-        Raises
-        ------
-        InputError
-            If values are inconsistent.
-        """
+        """The request with the values of the panel."""
         engine = engine_named(self.engine.currentData())
         case = ReposeCase(
             test=self.test.value(),
@@ -145,13 +139,7 @@ class SetupPanel(QWidget):
         return ReposeRequest(case, engine.key, settings, evaluation, threads=cores(), filling=filling)
 
     def evaluation_settings(self) -> EvaluationSettings:
-        """The settings of the evaluation.
-
-        Raises
-        ------
-        InputError
-            If values are inconsistent.
-        """
+        """The settings of the evaluation."""
         return EvaluationSettings(**self.evaluation.value())
 
     def set_evaluation(self, **changes: Any) -> None:

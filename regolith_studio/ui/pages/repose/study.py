@@ -82,13 +82,7 @@ class StudyPanel(RunPanel):
         self._draw()
 
     def request(self) -> tuple[str, tuple[float | str, ...], int, int]:
-        """Varied parameter, values, number of repetitions, and runs at the same time.
-
-        Raises
-        ------
-        InputError
-            If a value is invalid.
-        """
+        """Varied parameter, values, number of repetitions, and runs at the same time."""
         key = str(self.key.currentData())
         return key, values_in(key, self.values.value()), self.repeats.value(), self.workers.value()
 

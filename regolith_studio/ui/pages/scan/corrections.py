@@ -55,18 +55,11 @@ _CLICKS = {"merge": 2, "delete": 1, "seeds": 2, "fill": 1}
 class CorrectionState:
     """What a step of undo takes back.
 
-    Parameters
-    ----------
-    examples
-        Voxels in marked objects, and their classes.
-    loaded
-        An object classifier from a file or a recipe, used while nothing is marked.
-    actions
-        What is done with each class.
-    applied
-        Whether the object step is part of the segmentation.
-    edits
-        Corrections by hand.
+    - ``examples``: voxels in marked objects, and their classes.
+    - ``loaded``: an object classifier from a file or a recipe, used while nothing is marked.
+    - ``actions``: what is done with each class.
+    - ``applied``: whether the object step is part of the segmentation.
+    - ``edits``: corrections by hand.
     """
 
     examples: tuple[tuple[Voxel, int], ...] = ()

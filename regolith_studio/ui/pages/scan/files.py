@@ -287,10 +287,7 @@ class ParticleMaking(QObject):
     def make_particles(self, grains: Segmentation | None, settings: GrainSettings) -> None:
         """Convert the grains, or the labels of the scan, to particles and open them.
 
-        Parameters
-        ----------
-        settings
-            What the grains were found with.
+        ``settings``: what the grains were found with.
         """
         scan = self._opening.scan
         labels = grains.labels if grains else None

@@ -44,10 +44,7 @@ def colours_of_labels(labels: NDArray[np.int64]) -> NDArray[np.uint8]:
 class SliceView(QWidget):
     """Shows the slice of one direction; a click selects a voxel, the wheel another slice; Ctrl zooms.
 
-    Parameters
-    ----------
-    axis
-        Direction of view: 0, 1 or 2.
+    ``axis``: direction of view: 0, 1 or 2.
     """
 
     placePicked = Signal(int, int, int)  # noqa: N815

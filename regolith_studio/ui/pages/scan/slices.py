@@ -151,10 +151,7 @@ _NONE = np.zeros((0, 3), dtype=np.uint8)
 class GrainsView:
     """A view with its title; the camera is placed anew for another volume only.
 
-    Parameters
-    ----------
-    views
-        Backend of three-dimensional views.
+    ``views``: backend of three-dimensional views.
     """
 
     def __init__(self, views: str) -> None:
@@ -205,11 +202,8 @@ _COLOURS = np.array([QColor(each).getRgb() for each in CLASS_COLOURS], dtype=np.
 def overlay_picture(found: SlicePrediction, overlay: str) -> NDArray[np.uint8] | None:
     """RGBA of a prediction, shape (n_across, n_down, 4), or ``None`` for none.
 
-    Parameters
-    ----------
-    overlay
-        ``probability`` of grain (the likelier, the more opaque), the likeliest ``class``, ``uncertainty``
-        (opaque where the two likeliest classes are equally likely), or ``none``.
+    ``overlay``: ``probability`` of grain (the likelier, the more opaque), the likeliest ``class``,
+    ``uncertainty`` (opaque where the two likeliest classes are equally likely), or ``none``.
     """
     if overlay == "none":
         return None
@@ -231,12 +225,8 @@ def overlay_picture(found: SlicePrediction, overlay: str) -> NDArray[np.uint8] |
 def paint_picture(places: IntArray, labels: IntArray, size: tuple[int, int]) -> NDArray[np.uint8]:
     """RGBA of painted voxels, shape (n_across, n_down, 4), transparent elsewhere.
 
-    Parameters
-    ----------
-    places, labels
-        Voxels across and down, shape (n, 2), and their classes, shape (n,).
-    size
-        Voxels of the slice across and down.
+    ``places``, ``labels``: voxels across and down, shape (n, 2), and their classes, shape (n,). ``size``:
+    voxels of the slice across and down.
     """
     picture = np.zeros((*size, 4), dtype=np.uint8)
     picture[tuple(places.T)] = _COLOURS[labels]

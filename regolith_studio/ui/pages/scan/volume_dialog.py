@@ -46,18 +46,11 @@ _TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int6
 class VolumeDialog(QDialog):
     """Edits one :class:`VolumeInput`.
 
-    Parameters
-    ----------
-    path
-        The file, or the folder of slices.
-    header
-        The header of the file; ``None`` for a raw file.
-    layout
-        Layout from the name of a raw file, if any.
-    last
-        Initial voxel size and unit if the file has none.
-    gaps
-        Numbers that are absent from series of slices, by the names of the series.
+    - ``path``: the file, or the folder of slices.
+    - ``header``: the header of the file; ``None`` for a raw file.
+    - ``layout``: layout from the name of a raw file, if any.
+    - ``last``: initial voxel size and unit if the file has none.
+    - ``gaps``: numbers that are absent from series of slices, by the names of the series.
     """
 
     def __init__(

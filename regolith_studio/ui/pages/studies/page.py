@@ -35,12 +35,8 @@ NO_PARTICLE = N_("No particle is open; open a mesh first.")
 class SweepController:
     """Runs sweeps, which can run at the same time and be stopped separately.
 
-    Parameters
-    ----------
-    panels
-        By key of :data:`~regolith_studio.studies.sweeps.SWEEPS`.
-    bar
-        Selects the bounding box of the diameters.
+    ``panels``: by key of :data:`~regolith_studio.studies.sweeps.SWEEPS`. ``bar``: selects the bounding box
+    of the diameters.
     """
 
     def __init__(self, context: PageContext, panels: Mapping[str, SweepPanel], bar: LossSelector) -> None:
@@ -63,10 +59,7 @@ class SweepController:
     def start(self, key: str, quietly: bool = False) -> None:
         """Start a sweep with the present choices.
 
-        Parameters
-        ----------
-        quietly
-            Whether to ignore a sweep that the choices do not allow, instead of reporting it.
+        ``quietly``: whether to ignore a sweep that the choices do not allow, instead of reporting it.
         """
         choices, particles = self._session.choices, self._session.open_particles
         try:

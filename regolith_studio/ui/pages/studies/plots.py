@@ -49,18 +49,11 @@ Values = tuple[float, ...]
 class Series:
     """Points with intervals.
 
-    Parameters
-    ----------
-    label, colour
-        For the legend; rich text and hexadecimal RGB.
-    x, y
-        The points.
-    low, high
-        Ends of the interval of each y.
-    left, right
-        Ends of the interval of each x; empty if x is not measured.
-    line
-        Whether the points are joined.
+    - ``label``, ``colour``: for the legend; rich text and hexadecimal RGB.
+    - ``x``, ``y``: the points.
+    - ``low``, ``high``: ends of the interval of each y.
+    - ``left``, ``right``: ends of the interval of each x; empty if x is not measured.
+    - ``line``: whether the points are joined.
     """
 
     label: str
