@@ -19,6 +19,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
 from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.output_lock import output_lock
 from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, result_of
@@ -109,6 +110,14 @@ def uncertainty_steps(
     return budget
 
 
+def locked_uncertainty(
+    chain: Chain, request: UncertaintyRequest, folder: Path, workers: int | Executor = 1
+) -> Steps:
+    """:func:`uncertainty_steps` in a folder that no other process writes to meanwhile."""
+    with output_lock(folder):
+        return (yield from uncertainty_steps(chain, request, folder, workers))
+
+
 def measure_uncertainty(
     source: Sequence[Particle] | Volume,
     folder: Path | str,
@@ -125,9 +134,8 @@ def measure_uncertainty(
       ``coarsening``, ``model``, ``n_representatives``, ``seed``.
     """
     given = source if isinstance(source, Volume) else tuple(source)
-    steps = uncertainty_steps(
-        Chain.of(given, **settings), request or UncertaintyRequest(), Path(folder), workers
-    )
+    chain = Chain.of(given, **settings)
+    steps = locked_uncertainty(chain, request or UncertaintyRequest(), Path(folder), workers)
     return cast("UncertaintyBudget", result_of(steps))
 
 

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
+from benchmarks import uncertainty_coverage
 from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dem.case import ReposeCase
@@ -22,7 +24,7 @@ from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.uncertainty import UncertaintyRequest, measure_uncertainty, uncertainty_steps
 from regolith_studio.jobs.uncertainty_chain import Chain
 from regolith_studio.studies.figures import repose as figures
-from regolith_studio.studies.uncertainty import OUTPUTS
+from regolith_studio.studies.uncertainty import CONFIDENCE, KEYS, OUTPUTS
 from tests.dem.cone_engine import cone_engine, true_angle
 from tests.dem.interrupted_study import write_figure
 
@@ -128,3 +130,17 @@ def test_that_only_the_step_that_moves_the_angle_has_a_share_of_it(
     assert shares["engine"] > 0.5
     assert shares["facets"] is None
     assert (tmp_path / "repose_study.csv").is_file()
+
+
+@pytest.mark.slow
+def test_that_intervals_of_digitised_grains_hold_the_true_volume_as_often_as_they_say(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A small version of the benchmark: 27 grains in one scan, 100 trials, voxels and grains as steps."""
+    monkeypatch.setattr(uncertainty_coverage, "VARIED", ("voxel", "representatives"))
+    ends, truth, n_grains = uncertainty_coverage.intervals_of_trials(1, 100, seed=3)
+    assert n_grains > 22
+    counts = uncertainty_coverage.covered(ends, truth)
+    for key in ("volume", "surface_area"):
+        assert binomtest(counts[KEYS.index(key)], 100, CONFIDENCE).pvalue > 0.025, (key, counts)
+    assert counts[KEYS.index("sphericity")] >= 90  # wider than it needs to be

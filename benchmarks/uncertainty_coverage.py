@@ -1,0 +1,150 @@
+"""How often the intervals of a budget of uncertainty hold the truth, on digitised grains of known shape.
+
+    python -m benchmarks.uncertainty_coverage [SCANS] [TRIALS] [SEED] [RESULT.json]
+
+Polyhedra of 8 to 20 planes, stretched along three axes and log-normal in size, stand apart in scans with blur
+and noise. Each scan is taken to grains at all levels of threshold and voxels that the design has. A
+trial draws a sample of the grains of all scans with replacement; the truth is the mean over all of them.
+The binomial test is two-sided against the stated 95 %.
+"""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy import ndimage
+from scipy.stats import binomtest
+
+from benchmarks.grain_surfaces import polyhedron
+from benchmarks.result_files import add_result
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.settings import CleaningSettings, ExtractionSettings, SplittingSettings
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.jobs.extraction_settings import GrainSettings
+from regolith_studio.jobs.uncertainty_chain import Chain, GrainSample
+from regolith_studio.studies.uncertainty import CONFIDENCE, KEYS, STAGES, DescriptorBudget, saltelli_rows
+from tools.make_samples.grains import random_rotation
+
+ACROSS, SPREAD, NOISE, BLUR = 18.0, 0.2, 0.1, 0.8
+"""Median diameter in voxels, standard deviation of its logarithm, noise over contrast, blur in voxels."""
+CELL, CELLS = 36, 3
+SAMPLE, BASE = 30, 16
+VARIED = ("threshold", "voxel", "representatives")
+SETTINGS = GrainSettings(
+    SegmentationSettings(cleaning=CleaningSettings(min_voxels=60), splitting=SplittingSettings(False)),
+    ExtractionSettings(min_voxels=100),
+)
+BALL = Particle("ball", Mesh(icosphere(1).vertices, icosphere(1).faces))
+"""In the place of grains of which only the descriptors are needed."""
+Pool = dict[tuple[int, ...], list[Descriptors]]
+
+
+def scan_of_known(seed: int, cells: int = CELLS, across: float = ACROSS) -> tuple[Volume, list[Descriptors]]:
+    """A scan of one grain a cell, and what is true of each."""
+    rng = np.random.default_rng((seed, 77))
+    share, known = np.zeros((cells * CELL,) * 3, dtype=np.float32), []
+    for place in np.ndindex((cells,) * 3):
+        mesh = polyhedron(int(rng.integers(8, 21)), rng)
+        mesh = Mesh(mesh.vertices * rng.uniform((1.0, 0.9, 0.6), (1.6, 1.1, 1.0)), mesh.faces)
+        size = np.clip(across * np.exp(SPREAD * rng.standard_normal()), 10.0, 26.0)
+        scale = size / 2 / (3 * mesh.volume / (4 * np.pi)) ** (1 / 3)
+        grain = mesh.moved(shift=-mesh.centroid, rotation=random_rotation(rng), scale=float(scale))
+        known.append(describe(grain))
+        inside = _share(grain.moved(shift=CELL // 2 + rng.uniform(-0.5, 0.5, 3)))
+        share[tuple(slice(CELL * k, CELL * (k + 1)) for k in place)] = inside
+    seen = ndimage.gaussian_filter(share, BLUR) + NOISE * rng.standard_normal(share.shape)
+    return Volume(np.round(8000 + 6000 * seen).astype(np.uint16), np.ones(3), "grey", "known"), known
+
+
+def _share(grain: Mesh) -> FloatArray:
+    """Share of each voxel of a cell that a convex grain fills, to first order in the distance."""
+    corners = grain.triangles
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    places = np.moveaxis(np.indices((CELL,) * 3), 0, -1).reshape(-1, 3)
+    distance = (places @ normals.T - (normals * corners[:, 0]).sum(axis=1)).max(axis=1)
+    return np.asarray(np.clip(0.5 - distance, 0.0, 1.0).reshape((CELL,) * 3))
+
+
+def digitised(
+    volume: Volume, n_cells: int, levels: Sequence[dict[str, int]], seed: int
+) -> tuple[Chain, Pool]:
+    """Descriptors of the grain in each cell at each of the levels, empty where it is not found."""
+    chain, pool = Chain.of(volume, grains=SETTINGS, seed=seed), {}
+    for each in levels:
+        sample = chain.sample(each)
+        found: list[Descriptors] = [{} for _ in range(n_cells)]
+        edge = round(n_cells ** (1 / 3))
+        for particle, described in zip(sample.particles, sample.descriptors, strict=True):
+            cell = np.floor(particle.mesh.centroid / CELL).astype(int).clip(0, edge - 1)
+            found[int(np.ravel_multi_index(tuple(cell), (edge,) * 3))] = described
+        pool[tuple(each.values())] = found
+    return chain, pool
+
+
+def intervals_of_trials(
+    n_scans: int, n_trials: int, seed: int, cells: int = CELLS, across: float = ACROSS
+) -> tuple[FloatArray, FloatArray, int]:
+    """Ends of the intervals, shape (trials, keys, 2), true means, and number of grains in the scans."""
+    steps = Chain(Volume(np.zeros((2, 2, 2)), np.ones(3), "grey", ""), SETTINGS, kind="grey").steps
+    steps = tuple(each for each in steps if each.key in VARIED)
+    names = [each.key for each in steps]
+    rows = saltelli_rows(steps, BASE, seed)[:2].reshape(-1, len(steps))
+    scanned = [name for name in names if name != "representatives"]
+    column = [names.index(name) for name in scanned]
+    combinations = sorted({tuple(row) for row in rows[:, column].tolist()} | {(0,) * len(scanned)})
+    levels = [dict(zip(scanned, each, strict=True)) for each in combinations]
+    truths: list[Descriptors] = []
+    pool: Pool = {each: [] for each in combinations}
+    for number in range(n_scans):
+        volume, known = scan_of_known(seed + number, cells, across)
+        chain, found = digitised(volume, len(known), levels, seed)
+        kept = [k for k in range(len(known)) if all(table[k] for table in found.values())]
+        truths += [known[k] for k in kept]
+        for each, table in found.items():
+            pool[each] += [table[k] for k in kept]
+    truth = np.array([[each[key] for key in KEYS] for each in truths]).mean(axis=0)
+    ends = []
+    for trial in range(n_trials):
+        picks = np.random.default_rng((seed, trial, 5)).integers(0, len(truths), SAMPLE)
+        means = np.empty((len(rows) + 1, len(KEYS)))
+        for k, row in enumerate([[0] * len(steps), *rows.tolist()]):
+            levels_of_row = dict(zip(names, row, strict=True))
+            described = [pool[tuple(levels_of_row[name] for name in scanned)][at] for at in picks]
+            sample = GrainSample(
+                replace(chain, seed=trial), (BALL,) * SAMPLE, np.ones(SAMPLE), tuple(described)
+            )
+            means[k] = sample.grain_means(levels_of_row if k else {})
+        both = np.tile(means, (1, len(STAGES)))
+        shaped = both[1:].reshape(2, BASE, -1)
+        budget = DescriptorBudget(steps, both[0], shaped, SAMPLE)
+        ends.append(budget.intervals[: len(KEYS)])
+    return np.array(ends), truth, len(truths)
+
+
+def covered(ends: FloatArray, truth: FloatArray) -> list[int]:
+    """Number of intervals that hold the true mean, by descriptor."""
+    return ((ends[:, :, 0] <= truth) & (truth <= ends[:, :, 1])).sum(axis=0).tolist()
+
+
+def main(n_scans: int, n_trials: int, seed: int, result: str) -> None:
+    """Print and write coverage, p-value of the binomial test, and relative width."""
+    ends, truth, n_grains = intervals_of_trials(n_scans, n_trials, seed)
+    rows = {}
+    for k, (key, count) in enumerate(zip(KEYS, covered(ends, truth), strict=True)):
+        p = float(binomtest(count, n_trials, CONFIDENCE).pvalue)
+        width = 50 * float((np.diff(ends[:, k], axis=1)[:, 0] / truth[k]).mean())
+        rows[key] = [count, n_trials, round(p, 3), round(width, 2)]
+        print(key, rows[key])
+    add_result(result, "coverage", rows, scans=n_scans, grains=n_grains, sample=SAMPLE, seed=seed)
+
+
+if __name__ == "__main__":
+    words = [*sys.argv[1:], *("2", "400", "1", "")[len(sys.argv) - 1 :]]
+    main(int(words[0]), int(words[1]), int(words[2]), words[3])
