@@ -29,6 +29,11 @@ class History(Generic[T]):
         return self._value
 
     @property
+    def depth(self) -> int:
+        """Number of steps that can be taken back."""
+        return len(self._past)
+
+    @property
     def can_undo(self) -> bool:
         """Whether there is a step to take back."""
         return bool(self._past)

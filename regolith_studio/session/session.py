@@ -94,6 +94,11 @@ class Session:
         return self._board.running
 
     @property
+    def n_steps(self) -> int:
+        """Number of steps that :meth:`undo` can take back."""
+        return self._history.depth
+
+    @property
     def can_undo(self) -> bool:
         """Whether :meth:`undo` would change something."""
         return self._history.can_undo

@@ -1,7 +1,7 @@
 """The commands of menus, tool bar, shortcuts and dropped files."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from shutil import rmtree
 from tempfile import mkdtemp
@@ -38,6 +38,7 @@ from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.opening import ADD, REPLACE, UnitDialog, ask_add_or_replace
+from regolith_studio.ui.page_history import PageHistory
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -49,6 +50,8 @@ MESH_FILTERS = (
     N_("All files (*)"),
 )
 T = TypeVar("T")
+OPENING = "opening"
+"""Where a step is that of opening particles."""
 LOOK = "look"
 """Lane of the job that reads one particle while its unit is asked."""
 
@@ -83,6 +86,7 @@ class Commands(QObject):
 
     def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
         super().__init__(window)
+        self.page_steps = PageHistory(lambda: session.n_steps, self)
         self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
         self.openers: dict[FileKind, Callable[[Path], object]] = {FileKind.RECIPE: self._open_recipe}
         self._models: Path | None = None
@@ -214,19 +218,28 @@ class Commands(QObject):
 
     def undo(self) -> None:
         """Undo the last change; where there is none, reopen what was open before the last opening."""
-        if self._session.can_undo or self._before is None:
-            self._step(self._session.undo)
-            return
-        before, self._before, self._after = self._before, None, self._to_reopen(self._session.particles)
-        self._reopen(before)
+        self.page_steps.look(resting=True)
+        match self.next_step("undo"):
+            case "explore":
+                self._step(self._session.undo)
+            case "opening" if self._before is not None:
+                before, self._before = self._before, None
+                self._after = self._to_reopen(self._session.particles)
+                self._reopen(before)
+            case _:
+                self.page_steps.undo()
 
     def redo(self) -> None:
         """Redo what was undone last, a change or an opening."""
-        if self._session.can_redo or not self.can_redo:
-            self._step(self._session.redo)
-            return
-        after, self._after, self._before = self._after, None, self._to_reopen(self._session.particles)
-        self._reopen(after)
+        match self.next_step("redo"):
+            case "explore":
+                self._step(self._session.redo)
+            case "opening" if self._after is not None:
+                after, self._after = self._after, None
+                self._before = self._to_reopen(self._session.particles)
+                self._reopen(after)
+            case _:
+                self.page_steps.redo()
 
     def _step(self, step: Callable[[], None]) -> None:
         before = self._session.choices
@@ -234,25 +247,26 @@ class Commands(QObject):
         if self._session.choices.changed_from(before) - {"selected"}:  # each page shows the particle
             self.stepped.emit()
 
-    def step_title(self, name: str) -> str:
-        """What ``undo`` or ``redo`` would act on, and where; empty where it would change nothing."""
+    def next_step(self, name: str) -> str:
+        """Page that ``undo`` or ``redo`` would act on, or :data:`OPENING`; empty where there is nothing."""
+        session, steps = self._session, self.page_steps
         if name == "undo":
-            place, possible = tr("Undo on Explore"), self._session.can_undo
-            opening, again = tr("Undo the opening"), self.can_undo
+            newest, possible, opening = steps.undo_page(), session.can_undo, self._before is not None
+            oldest = steps.undo_page(older=True)
         else:
-            place, possible = tr("Redo on Explore"), self._session.can_redo
-            opening, again = tr("Redo the opening"), self.can_redo
-        return place if possible else opening if again else ""
+            newest, possible = steps.redo_page(), session.can_redo
+            opening = self._after is not None and not session.can_undo
+            oldest = steps.redo_page(newer=True)
+        return newest or ("explore" if possible else OPENING if opening else oldest)
 
-    @property
-    def can_undo(self) -> bool:
-        """Whether :meth:`undo` would change something."""
-        return self._session.can_undo or self._before is not None
-
-    @property
-    def can_redo(self) -> bool:
-        """Whether :meth:`redo` would change something; a change after an undone opening discards it."""
-        return self._session.can_redo or (self._after is not None and not self._session.can_undo)
+    def step_title(self, name: str, pages: Mapping[str, str]) -> str:
+        """What ``undo`` or ``redo`` would act on, and on which page; empty where it would change nothing."""
+        where = self.next_step(name)
+        if where == OPENING:
+            return tr("Undo the opening") if name == "undo" else tr("Redo the opening")
+        page = tr(pages[where]) if where else ""
+        title = tr("Undo on {page}", page=page) if name == "undo" else tr("Redo on {page}", page=page)
+        return title if where else ""
 
     def _remember_open(self) -> None:
         """Keep how to reopen the particles that are about to be closed."""

@@ -54,7 +54,8 @@ class MainWindow(QMainWindow):
         self.reports = ReportRuns(session, preferences, self.toast, self)
         self.bindings = Bindings(session, self.toast.problem, self)
         self.pages = PageStack(tuple(PAGES.values()), self._context)
-        self.projects = ProjectFiles(session, self.pages, self.toast, self)
+        self.commands.page_steps.watch(self.pages)
+        self.projects = ProjectFiles(session, self.pages, self.commands.page_steps, self.toast, self)
         self.window_state = WindowState(preferences)
         self.tasks = TasksPanel()
         self.activity = ActivityDock(self)
@@ -132,6 +133,8 @@ class MainWindow(QMainWindow):
             bindings.refresh("tasks", show, slow=True)
         for event in ("choices", "particles"):
             bindings.listen(event, self._show_choices)
+        bindings.listen("particles", self.commands.page_steps.note_opening)
+        self.commands.page_steps.changed.connect(self._show_choices)
         self._show_choices()
         bindings.listen("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         bindings.listen("problems", lambda problems: report_file_problems(self.toast, problems))
@@ -144,8 +147,9 @@ class MainWindow(QMainWindow):
         CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
 
     def _show_choices(self) -> None:
+        titles = {key: page.title for key, page in self.pages.pages.items()}
         for name in ("undo", "redo"):
-            self.menus.offer_step(name, self.commands.step_title(name))
+            self.menus.offer_step(name, self.commands.step_title(name, titles))
         self.menus.by_name["repair"].setChecked(self.session.choices.repair)
 
     def _list_recent(self) -> None:
@@ -180,6 +184,7 @@ class MainWindow(QMainWindow):
         self.hide()
         self.closing.emit()
         self.bindings.disconnect_all()
+        self.commands.page_steps.stop()
         self.projects.close()
         self.session.close()
         self.pages.close_pages()

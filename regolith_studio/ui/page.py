@@ -77,12 +77,19 @@ class PageWidget(QWidget):
         """One sentence on what closing would lose or stop, or nothing; tasks need not be named."""
         return ""
 
-    def state(self) -> dict[str, Any]:
-        """What a project file keeps of this page, as plain JSON."""
+    def settings(self) -> dict[str, Any]:
+        """The part of :meth:`state` that undo takes back: what is set on this page alone."""
         return {}
+
+    def state(self) -> dict[str, Any]:
+        """What a project file keeps of this page, as plain JSON; under ``made``, what was computed here."""
+        return self.settings()
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Show what :meth:`state` returned once, maybe by another version: ignore what is not known."""
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        """Show again what was made of the particles, which are open now; after :meth:`restore`."""
 
     def on_close(self) -> None:
         """Called when the window closes: release graphics memory, stop timers."""

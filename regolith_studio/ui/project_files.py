@@ -5,17 +5,21 @@ import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
+from uuid import uuid4
 
-from PySide6.QtCore import QDateTime, QLockFile, QObject, QTimer, Signal
+from PySide6.QtCore import QDateTime, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.io.output_lock import lock_file
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import preferences_path
 from regolith_studio.session.project import SUFFIX, Project, SessionRecipe, read_project
+from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.commands import without
+from regolith_studio.ui.page_history import PageHistory
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.toast import Toast
@@ -57,29 +61,61 @@ def may_close(
 
 
 FILTER = N_("Projects (*.regolith)")
+MADE = ("scan", "made")
+"""In the state of a page: what was made or opened there, for which closing asks."""
 AUTOSAVE_SECONDS = 10
 """Between a change and the copy of it that is kept for the case of a crash."""
+
+
+class CopyLock:
+    """Of an automatic copy: held by the window that it belongs to, and released by any death of it.
+
+    The lock is one of the system, as the number of a process says nothing: in a container the next window
+    has the number of the one that crashed.
+    """
+
+    def __init__(self, copy: Path) -> None:
+        self._file, self._handle = Path(f"{copy}.lock"), -1
+
+    def take(self) -> bool:
+        """Take the lock, or hold it further; whether it is held."""
+        if self._handle < 0:
+            with suppress(OSError):
+                self._handle = lock_file(self._file)
+        return self._handle >= 0
+
+    def release(self) -> None:
+        """Let go of it, and remove its file."""
+        if self._handle >= 0:
+            self._file.unlink(missing_ok=True)
+            os.close(self._handle)
+            self._handle = -1
 
 
 class ProjectFiles(QObject):
     """The current project file, and whether the session has changed since it was saved.
 
     - ``session``, ``pages``: what is saved.
+    - ``steps``: begin again with a project.
     - ``toast``: says what came of it.
     - ``window``: parent of the dialogs.
     """
 
     changed = Signal()
 
-    def __init__(self, session: Session, pages: PageStack, toast: Toast, window: QWidget) -> None:
+    def __init__(
+        self, session: Session, pages: PageStack, steps: PageHistory, toast: Toast, window: QWidget
+    ) -> None:
         super().__init__(window)
+        self._steps = steps
         self._session, self._pages, self._toast, self._window = session, pages, toast, window
         self.path: Path | None = None
         self._digest = ""
         self._saved: Project | None = None
-        self._lock = _lock_of(autosave_path())
-        self._recovered: dict[Path, QLockFile] = {}
+        self._lock = CopyLock(autosave_path())
+        self._recovered: dict[Path, CopyLock] = {}
         self._copied: Project | None = None
+        self._begun: Recipe | None = None
         self._restored = False
         self._changed = False
         self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS)
@@ -87,6 +123,7 @@ class ProjectFiles(QObject):
         self._timer.start()
         for event in (session.events.choices, session.events.particles):
             event.connect(self._note_change)
+        session.events.particles.connect(self._begin)
 
     @property
     def modified(self) -> bool:
@@ -103,9 +140,20 @@ class ProjectFiles(QObject):
         """What closing would lose, in sentences."""
         if self._restored:
             return [tr("What was restored after the crash is not saved as a project.")]
-        if self.path is None or not self.modified:
-            return []
-        return [tr("{name} has changes that are not saved.", name=self.path.name)]
+        if self.path is None:
+            return [tr("This session is not saved as a project.")] if self._is_begun() else []
+        return [tr("{name} has changes that are not saved.", name=self.path.name)] if self.modified else []
+
+    def _is_begun(self) -> bool:
+        """Whether a session without a name holds more than what the window was opened with."""
+        state = self._state()
+        made = any(page.get(key) for page in state.pages.values() for key in MADE)
+        return self._begun is not None and (made or state.recipe != self._begun)
+
+    def _begin(self) -> None:
+        """Keep what the first particles make of the session: nothing of it is lost by closing."""
+        if self._begun is None and self._session.particles:
+            self._begun = self._state().recipe
 
     def save(self) -> bool:
         """Write the project into its file, asking for one the first time; says whether it was written."""
@@ -145,12 +193,12 @@ class ProjectFiles(QObject):
         what has not been asked about is offered by the next window.
         """
         for path in stale_autosaves():
-            lock = _lock_of(path)
-            if lock.tryLock(0) and path.exists():  # no other window asks about it, or has just been answered
+            lock = CopyLock(path)
+            if lock.take() and path.exists():  # no other window asks about it, or has just been answered
                 self._ask_about(path, lock)
                 return
 
-    def _ask_about(self, path: Path, lock: QLockFile) -> None:
+    def _ask_about(self, path: Path, lock: CopyLock) -> None:
         text = tr("Regolith Studio was not closed properly the last time. Restore its state?")
         box = QMessageBox(QMessageBox.Icon.Question, tr("Recover"), text, parent=self._window)
         box.setObjectName("recovery")
@@ -182,7 +230,7 @@ class ProjectFiles(QObject):
     def _forget_recovered(self) -> None:
         for path, lock in self._recovered.items():
             _remove(path)
-            lock.unlock()
+            lock.release()
         self._recovered = {}
 
     def close(self) -> None:
@@ -190,8 +238,9 @@ class ProjectFiles(QObject):
         self._timer.stop()
         for event in (self._session.events.choices, self._session.events.particles):
             event.disconnect(self._note_change)
+        self._session.events.particles.disconnect(self._begin)
         _remove(autosave_path())
-        self._lock.unlock()
+        self._lock.release()
         self._forget_recovered()
 
     def _state(self) -> Project:
@@ -236,22 +285,26 @@ class ProjectFiles(QObject):
                 self._pages.go(key).restore(state)
         if project.page in self._pages.pages:
             self._pages.go(project.page)
-        self._select_later(project.selected)
+        self._go_on_later(project)
         return True
 
-    def _select_later(self, name: str) -> None:
-        """Put the particle back on screen as soon as it has been read."""
+    def _go_on_later(self, project: Project) -> None:
+        """Put the particle back on screen as soon as it has been read, and what was made of the particles."""
 
-        def select() -> None:
+        def go_on() -> None:
             particles.disconnect(later)
-            if any(entry.id == name for entry in self._session.particles):
-                self._session.select(name)
+            if any(entry.id == project.selected for entry in self._session.particles):
+                self._session.select(project.selected)
+            for key, state in project.pages.items():
+                if key in self._pages.widgets:
+                    self._pages.widgets[key].resume(state)
+            self._steps.restart()
             if self.path is not None and not self._restored:
                 self._saved = self._state()
                 self.changed.emit()
 
         def later() -> None:
-            QTimer.singleShot(0, self, select)
+            QTimer.singleShot(0, self, go_on)
 
         particles = self._session.events.particles
         particles.connect(later)
@@ -274,7 +327,7 @@ class ProjectFiles(QObject):
         path = autosave_path()
         with suppress(OSError):  # which the saving tells
             path.parent.mkdir(parents=True, exist_ok=True)
-        self._lock.tryLock(0)  # first: a file without a lock is one that a crash has left
+        self._lock.take()  # first: a file without a lock is one that a crash has left
         try:
             copy = self._state().model_copy(update={"file": str(self.path or "")})
             copy.save(path, self._session_recipe().model)
@@ -297,9 +350,13 @@ def _digest(path: Path) -> str:
         return ""
 
 
+THIS_START = f"{os.getpid()}-{uuid4().hex[:8]}"
+"""Of this process alone: numbers of processes come again."""
+
+
 def autosave_path() -> Path:
     """Where this process keeps its state for the case of a crash."""
-    return preferences_path().with_name(f"autosave-{os.getpid()}{SUFFIX}")
+    return preferences_path().with_name(f"autosave-{THIS_START}{SUFFIX}")
 
 
 def stale_autosaves() -> list[Path]:
@@ -321,15 +378,8 @@ def _remove(autosave: Path) -> None:
         path.unlink(missing_ok=True)
 
 
-def _lock_of(path: Path) -> QLockFile:
-    lock = QLockFile(f"{path}.lock")
-    lock.setStaleLockTime(0)
-    return lock
-
-
 def _is_abandoned(path: Path) -> bool:
-    lock = _lock_of(path)
-    if not lock.tryLock(0):
-        return False
-    lock.unlock()
-    return True
+    lock = CopyLock(path)
+    taken = lock.take()
+    lock.release()
+    return taken

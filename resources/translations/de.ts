@@ -4464,8 +4464,8 @@
         <translation>Wiederholen</translation>
     </message>
     <message>
-        <source>Redo on Explore</source>
-        <translation>Wiederholen auf Erkunden</translation>
+        <source>Redo on {page}</source>
+        <translation>Wiederholen auf {page}</translation>
     </message>
     <message>
         <source>Redo the last step (Ctrl+Shift+Z)</source>
@@ -5812,6 +5812,10 @@
         <translation>Der Zylinder ist nur {across} Partikel breit; Wände und einzelne Partikel fallen ins Gewicht.</translation>
     </message>
     <message>
+        <source>The dataset in {folder} has been moved or changed since: build it again.</source>
+        <translation>Der Datensatz in {folder} wurde inzwischen verschoben oder geändert: bitte neu erstellen.</translation>
+    </message>
+    <message>
         <source>The dataset is in {folder}.</source>
         <translation>Der Datensatz ist in {folder}.</translation>
     </message>
@@ -6304,6 +6308,10 @@
         <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
     </message>
     <message>
+        <source>This session is not saved as a project.</source>
+        <translation>Diese Sitzung ist nicht als Projekt gespeichert.</translation>
+    </message>
+    <message>
         <source>Three-dimensional views: {how}</source>
         <translation>Dreidimensionale Ansichten: {how}</translation>
     </message>
@@ -6436,8 +6444,8 @@
         <translation>Alle Striche zurücknehmen</translation>
     </message>
     <message>
-        <source>Undo on Explore</source>
-        <translation>Rückgängig auf Erkunden</translation>
+        <source>Undo on {page}</source>
+        <translation>Rückgängig auf {page}</translation>
     </message>
     <message>
         <source>Undo stroke</source>

@@ -181,16 +181,16 @@ def test_that_an_undone_opening_is_redone_until_something_else_changes(opening, 
     commands, session, _ = opening
     press("opening_replace")
     commands.open_paths([write_ball(tmp_path / "b" / "two.stl", 30.0)], "um")
-    assert not commands.can_redo
+    assert not commands.next_step("redo")
     commands.undo()
-    assert commands.can_redo
+    assert commands.next_step("redo")
     commands.redo()
     assert names(session) == ["two"]
-    assert not commands.can_redo
+    assert not commands.next_step("redo")
     commands.undo()
     assert names(session) == ["one"]
     session.choose(l_max=5)
-    assert not commands.can_redo
+    assert not commands.next_step("redo")
     commands.undo()
     commands.redo()
     assert (names(session), session.choices.l_max) == (["one"], 5)

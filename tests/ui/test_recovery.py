@@ -9,6 +9,8 @@ import time
 import pytest
 from PySide6.QtWidgets import QMessageBox
 
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session import project
 from regolith_studio.session.choices import Choices
@@ -16,7 +18,7 @@ from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.project_files import autosave_path, stale_autosaves
+from regolith_studio.ui.project_files import CopyLock, autosave_path, stale_autosaves
 
 WORK = """
 from regolith_studio.ui import project_files
@@ -118,3 +120,53 @@ def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypa
 
 def _holds(folder, n_facets):
     return any(read_project(path).recipe.n_facets == n_facets for path in folder.glob("autosave-*.regolith"))
+
+
+def test_that_undo_acts_on_the_page_of_the_last_change_and_shows_it(shown, preferences):
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    steps, undo, redo = window.commands.page_steps, *(window.menus.by_name[each] for each in ("undo", "redo"))
+    dataset, repose = window.go("dataset"), window.go("repose")
+    repose.setup.particles.setValue(500)
+    steps.look(resting=True)
+    window.go("explore")
+    window.session.choose(n_facets=12)
+    before = dataset.representatives.count.value()
+    window.go("dataset").representatives.count.setValue(before - 1)
+    steps.look(resting=True)
+    acted = []
+    window.go("lecture")
+    while undo.isEnabled():
+        title = undo.text()
+        undo.trigger()
+        acted.append((title, window.pages.current))
+    assert acted == [
+        ("Undo on Dataset", "dataset"),
+        ("Undo on Explore", "explore"),
+        ("Undo on Angle of repose", "repose"),
+    ]
+    assert (dataset.representatives.count.value(), window.session.choices.n_facets) == (before, 20)
+    assert repose.setup.particles.value() != 500
+    while redo.isEnabled():
+        redo.trigger()
+    assert dataset.representatives.count.value() == before - 1
+    assert (repose.setup.particles.value(), window.session.choices.n_facets) == (500, 12)
+
+
+def test_that_a_copy_of_a_process_of_the_same_number_is_offered(preferences):  # noqa: ARG001
+    path = autosave_path().with_name(f"autosave-{os.getpid()}-of-another.regolith")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Project().save(path)
+    held = CopyLock(path)
+    assert held.take()
+    assert stale_autosaves() == []
+    held.release()
+    assert stale_autosaves() == [path]
+    path.unlink()
+
+
+def test_that_closing_asks_where_a_session_without_a_name_was_changed(shown, preferences):
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    window.session.adopt([Particle("ball", icosphere(1).moved(scale=20.0))])
+    assert window.projects.unsaved() == []
+    window.session.choose(n_facets=9)
+    assert window.projects.unsaved() == ["This session is not saved as a project."]

@@ -35,6 +35,7 @@ from regolith_studio.jobs.representatives_jobs import (
     survey_representatives,
 )
 from regolith_studio.messages import N_
+from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import equal_parts, scrolled, scrolled_column, side_by_side, stacked, tabs
@@ -84,6 +85,7 @@ class DatasetPage(PageWidget):
         self._exports: list[ExportResult] = []
         self._made_with: tuple[Any, ...] | None = None
         self._opened: DatasetRequest | None = None
+        self._to_reopen: Mapping[str, Any] | None = None
         self._to_build: tuple[Path, bool, Path | None] | None = None
         self._classes_to_build: list[ShapeClass] = []
 
@@ -119,13 +121,50 @@ class DatasetPage(PageWidget):
             "library": self.show_library,
         }
 
-    def state(self) -> dict[str, Any]:
+    def settings(self) -> dict[str, Any]:
         return {
             "representatives": self.representatives.value(),
             "sizes": self.sizes.text(),
             "name": self.folder.name.text(),
             "export": self.targets.value(),
         }
+
+    def state(self) -> dict[str, Any]:
+        made: dict[str, Any] = {"found": True} if self._survey is not None else {}
+        if self._folder is not None:
+            document = fingerprint(self._folder / "dataset.json")
+            made |= {"folder": str(self._folder), "fingerprint": document, "current": self._is_current()}
+        return self.settings() | {"made": made}
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        made = state.get("made") or {}
+        self._show_particles()
+        self._to_reopen = made if made.get("folder") else None
+        if made.get("found"):
+            self._find()
+        else:
+            self._reopen()
+
+    def _reopen(self) -> None:
+        """Show the dataset of a project, which the project names but does not hold, if there is one."""
+        made, self._to_reopen = self._to_reopen, None
+        if made is None:
+            return
+        folder = Path(made["folder"])
+        if fingerprint(folder / "dataset.json") != made.get("fingerprint"):
+            note = tr(
+                "The dataset in {folder} has been moved or changed since: build it again.", folder=folder
+            )
+            self.result.show_record(ResultRecord(state=ResultState.FAILED, note=note))
+            return
+
+        def take(answer: tuple[Path, Dataset]) -> None:
+            self._take_read(answer)
+            self._made_with = self._settings() if made.get("current") else ("others",)
+            self._show_result()
+
+        job = Job(open_dataset_folder, (folder,))
+        self._context.start(tr("Reading the dataset"), job, take, queue=BUILD, repeats=True)
 
     def restore(self, state: Mapping[str, Any]) -> None:
         for name, panel in (("representatives", self.representatives), ("export", self.targets)):
@@ -320,6 +359,7 @@ class DatasetPage(PageWidget):
     def _take_chosen(self, chosen: ChosenParticles) -> None:
         self._chosen = chosen
         self._show_chosen()
+        self._reopen()
         to_build, self._to_build = self._to_build, None
         if to_build is not None:
             self.build_in(*to_build)

@@ -231,12 +231,24 @@ class ModelPage(PageWidget):
             "save_card": self.save_card,
         }
 
-    def state(self) -> dict[str, Any]:
+    def settings(self) -> dict[str, Any]:
         return {
             "source": self.source.value(),
             "drawing": self.drawing.value(),
             "evaluation": self.evaluation.value(),
         }
+
+    def state(self) -> dict[str, Any]:
+        made = {"fitted": self._fitted is not None, "drawn": self._drawn is not None}
+        return self.settings() | {"made": made if made["fitted"] else {}}
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        made = state.get("made") or {}
+        self._show_sources()
+        if made.get("drawn"):
+            self.draw()
+        elif made.get("fitted"):
+            self.fit_model()
 
     def restore(self, state: Mapping[str, Any]) -> None:
         for name, panel in (

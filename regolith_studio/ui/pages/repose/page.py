@@ -138,14 +138,17 @@ class ReposePage(PageWidget):
     def busy(self) -> str:
         return self.run.busy() or self.studies.run.busy() or self.calibrations.run.busy()
 
-    def state(self) -> dict[str, Any]:
-        shown = self._shown_run
+    def settings(self) -> dict[str, Any]:
         return {
             "setup": self.setup.state(),
             "study": self.study.state(),
             "calibration": self.calibration.state(),
-            "shown": {"folder": str(shown), "sha256": _hash_of_run(shown)} if shown else None,
         }
+
+    def state(self) -> dict[str, Any]:
+        shown = self._shown_run
+        run = {"folder": str(shown), "sha256": _hash_of_run(shown)} if shown else None
+        return self.settings() | {"shown": run}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         for name, panel in (("setup", self.setup), ("study", self.study), ("calibration", self.calibration)):

@@ -56,6 +56,10 @@ class SweepController:
         """Results by key, which are partial while a sweep is running or after it was stopped."""
         return self._results
 
+    def current(self) -> list[str]:
+        """Keys of the sweeps whose results are of the present choices."""
+        return [key for key, study in self._results.items() if study.names and not self._is_outdated(key)]
+
     def start(self, key: str, quietly: bool = False) -> None:
         """Start a sweep with the present choices.
 
@@ -156,12 +160,29 @@ class StudiesPage(PageWidget):
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {"run_all": self.run_all, "save": self.save}
 
-    def state(self) -> dict[str, Any]:
+    def settings(self) -> dict[str, Any]:
         return {
             "rows": list(self.bar.names()),
             "box": self.bar.box.value(),
             "values": {key: panel.values.value() for key, panel in self.variations.items()},
         }
+
+    def state(self) -> dict[str, Any]:
+        results = self._session.results
+        made: list[str] = [k for k in KINDS if getattr(results, k.value) and k.value not in results.outdated]
+        made += self.sweeps.current()
+        return self.settings() | {"made": made + ["gallery"] * bool(self.gallery.value())}
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        """Compute again what was shown: each study follows from its choices and seed."""
+        made = state.get("made") or []
+        self._follow_particles()
+        for kind in (each for each in KINDS if each in made):
+            self.start(kind)
+        for key in (each for each in SWEEPS if each in made):
+            self.sweeps.start(key, quietly=True)
+        if "gallery" in made:
+            self.draw_gallery()
 
     def restore(self, state: Mapping[str, Any]) -> None:
         rows, values = state.get("rows"), state.get("values")
