@@ -154,13 +154,14 @@ def _check_inputs(run: RecipeRun) -> None:
     if not run.items.members:
         sentences = [problem.sentence for problem in run.items.problems]
         raise FileError(sentences[0] if sentences else "There is no file to read.")
-    _check_size(run.recipe, len(run.items.members))
-    check_dataset_request(run.recipe, len(run.items.members))
+    count = len(run.items.members)
+    _check_size(run.recipe, run.items.largest_group if run.recipe.outputs.dataset_by_group else count)
+    check_dataset_request(run.recipe, count)
 
 
 def _check_size(recipe: Recipe, n_particles: int) -> None:
     """Raise an error for a dataset that would be too large to be read."""
-    if recipe.outputs.dataset and not recipe.outputs.dataset_by_group:
+    if recipe.outputs.dataset:
         count = recipe.representatives.count if recipe.representatives else 0
         check_count(count or n_particles, recipe.choices().coarsening_request.max_facets)
 

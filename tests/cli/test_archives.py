@@ -66,7 +66,9 @@ def test_that_a_cluster_needs_a_folder_too(command, library):
     assert "need a folder for the results" in command("describe", library, "--runner", "dask").err
 
 
-def test_that_an_archive_is_coarsened_and_becomes_a_dataset_for_each_fraction(command, library, tmp_path):
+def test_that_an_archive_is_coarsened_and_becomes_a_dataset_for_each_fraction(
+    command, library, tmp_path, monkeypatch
+):
     result = command("coarsen", library, "-o", tmp_path / "coarse", "--method", "quadric")
     assert result.code == 1
     assert {path.name for path in (tmp_path / "coarse" / "meshes").glob("*.stl")} == {
@@ -83,6 +85,9 @@ def test_that_an_archive_is_coarsened_and_becomes_a_dataset_for_each_fraction(co
         folder = tmp_path / "library" / "dataset" / each["folder"]
         assert dataset_hash(folder) == each["sha256"]
         assert len(read_dataset(folder)) == each["particles"]
+    monkeypatch.setattr("regolith_studio.dataset.folder_io.MAX_DOCUMENT_BYTES", 7_000)
+    large = command("dataset", "build", library, "-o", tmp_path / "large", *options)
+    assert "4 particles of 12 facets is larger than can be read again" in large.err
     refused = command(
         "dataset", "build", library, "-o", tmp_path / "other", "--by-group", "--representatives", "2"
     )

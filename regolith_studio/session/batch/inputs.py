@@ -193,6 +193,12 @@ class BatchInputs:
             members = _select(members, recipe.particles)
         return cls(tuple(members), tuple(problems))
 
+    @property
+    def largest_group(self) -> int:
+        """Members of the largest group of files; other inputs count as one group."""
+        groups = Counter(each.file.group if isinstance(each, FileInput) else "" for each in self.members)
+        return max(groups.values(), default=0)
+
     def fingerprints(self) -> Iterable[str]:
         """Of all members."""
         return (member.fingerprint for member in self.members)
