@@ -300,6 +300,19 @@ def drum(
             "--moments", min=20, max=100_000, help="Moments at which the surface is measured.", metavar="N"
         ),
     ] = 300,
+    measured: Annotated[
+        float | None,
+        typer.Option(
+            "--measured",
+            min=-90.0,
+            max=90.0,
+            help="Your own dynamic angle in degrees, to compare.",
+            metavar="A",
+        ),
+    ] = None,
+    measured_error: Annotated[
+        float, typer.Option("--measured-error", min=0.0, max=45.0, help="Its standard error.", metavar="E")
+    ] = 1.0,
     particles: Particles = 1000,
     how: DrumOptions,
     coarse_graining: CoarseGraining = 0.0,
@@ -315,6 +328,7 @@ def drum(
     from dataclasses import replace
 
     from regolith_studio.dataset.parameters import DrumRotation, rpm_of
+    from regolith_studio.dem.drum_angle import DrumMeasurement, compare_angles
 
     if rpm is not None and froude is not None:
         raise typer.BadParameter("Give either --rpm or --froude.")
@@ -330,10 +344,17 @@ def drum(
             turning = DrumRotation(rpm_of(froude, request.case.test), turns, moments)
         request = replace(request, case=replace(request.case, drum=turning))
     done = _simulate(dataset, output, request, bond, filling, overwrite, jobs)
+    document, found = dict(done.document), done.measurement
+    if measured is not None and isinstance(found, DrumMeasurement):
+        document["measured"] = compare_angles(found, measured, measured_error)
     if json:
-        print_json(done.document)
-    else:
-        typer.echo(run_in_words(done.document))
+        print_json(document)
+        return
+    typer.echo(run_in_words(document))
+    if "measured" in document:
+        low, high = document["measured"]["interval_deg"]
+        difference = document["measured"]["difference_deg"]
+        typer.echo(f"less the measured    {difference:+.1f} deg ({low:+.1f} to {high:+.1f}, 95 % interval)")
 
 
 def _simulate(

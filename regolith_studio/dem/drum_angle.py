@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.stats import theilslopes
+from scipy.stats import norm, theilslopes
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase
@@ -249,6 +249,19 @@ def _warnings(falls: int, bend: float, slip: float) -> list[str]:
         template = N_("The bed slips on the wall: grains there lag behind it by {slip} % of its speed.")
         sentences.append(Message(template, slip=Number(100 * slip, ".0f")))
     return sentences
+
+
+def compare_angles(measurement: DrumMeasurement, angle: float, error: float) -> dict[str, Any]:
+    """The simulated less a measured dynamic angle of standard error `error`, with interval, in degrees."""
+    quantile = float(norm.ppf(0.5 + CONFIDENCE / 2))
+    half = float(np.hypot(np.ptp(measurement.interval) / 2, quantile * error))
+    difference = measurement.angle - angle
+    return {
+        "angle_deg": angle,
+        "standard_error_deg": error,
+        "difference_deg": difference,
+        "interval_deg": [difference - half, difference + half],
+    }
 
 
 def drum_document(measurement: DrumMeasurement) -> dict[str, Any]:

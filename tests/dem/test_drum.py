@@ -120,8 +120,17 @@ def test_that_blocks_on_the_turning_wall_slip_at_its_angle_of_friction(engine: s
 
 def test_that_a_drum_runs_measures_and_says_what_it_was(boxes_folder: Path, tmp_path: Path, capsys) -> None:
     command = f"repose drum {boxes_folder} -o {tmp_path / 'drum'} --particles 150 --froude 0.02"
-    assert run_command(f"{command} --turns 0.2 --moments 40 --seed 3 --json".split()) == 0
+    assert (
+        run_command(
+            f"{command} --turns 0.2 --moments 40 --seed 3 --measured 40 --measured-error 2 --json".split()
+        )
+        == 0
+    )
     document = json.loads(capsys.readouterr().out)
+    compared, (low, high) = document["measured"], document["measurement"]["interval_deg"]
+    assert compared["difference_deg"] == pytest.approx(document["measurement"]["angle_deg"] - 40.0)
+    half = np.hypot((high - low) / 2, 1.96 * 2.0)
+    assert np.ptp(compared["interval_deg"]) == pytest.approx(2 * half, rel=1e-3)
     measured = document["measurement"]
     assert measured["status"] == "drum"
     assert measured["froude"] == pytest.approx(0.02)
