@@ -1,5 +1,6 @@
 """``python -m regolith_studio`` and the installed command ``regolith-studio``."""
 
+import atexit
 import os
 import signal
 import sys
@@ -30,7 +31,10 @@ def main() -> None:
     signals.ended = True
     if stop_requests:
         remove_unfinished()
-    sys.exit(128 + stop_requests[0] if stop_requests else code)
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        os._exit(128 + stop_requests[0])  # Python would take VTK apart for a second, which nothing ends
+    sys.exit(code)
 
 
 if __name__ == "__main__":

@@ -52,6 +52,8 @@ WAITS = {
     "waits for a program": "try:\n            time.sleep(60)\n        finally:\n"
     "            subprocess.run(['sleep', '3'])",
     "ends by itself": "time.sleep(60)",
+    "is slow to take apart": "sys.slow = type('S', (), {'__del__': lambda _, wait=time.sleep: wait(60)})()\n"
+    "        time.sleep(60)",
 }
 
 
@@ -85,6 +87,7 @@ def start(code: str, folder: Path) -> "subprocess.Popen[str]":
         pytest.param("leaves a thread", "SIGINT", 130, marks=pytest.mark.slow),
         pytest.param("waits for a program", "SIGINT", 130, marks=pytest.mark.slow),
         pytest.param("ends by itself", "SIGINT", 130, marks=pytest.mark.slow),
+        pytest.param("is slow to take apart", "SIGINT", 130, marks=pytest.mark.slow),
     ],
 )
 def test_that_a_command_that_waits_for_something_ends_two_seconds_after_a_signal(
