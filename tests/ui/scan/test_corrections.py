@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
+from regolith_studio.imaging.label_table import voxel_inside
 from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.imaging.volume import box_between
 from regolith_studio.jobs.extraction_settings import (
     VolumeInput,
     read_grain_settings,
@@ -207,6 +209,16 @@ def test_that_the_grains_stand_beside_the_slices_in_the_same_colours(page, wait)
     assert set(surface.labels) == set(sizes) == {1, 2, 3, 4, 5, 6}
     assert sum(sizes.values()) == np.count_nonzero(page.grains.labels.array > 0)
     assert "6 grains" in page.slices.grains.frame.title
+    assert page.workflow.card.record.values[0] == "6"
+    assert page.workflow.card.button.text() == "Find again"
+    label = int(page.grains.labels.array.max())
+    x, y, z = voxel_inside(page.grains.labels.array, label, box_between((0, 0, 0), page.grains.labels.shape))
+    page.slices.go_to((x, y, z))
+    size = page.scan.volume.voxel_size
+    page.slices.views[0].hover(QPointF((x + 0.5) * size[0], (y + 0.5) * size[1]))
+    told = page.slices.readout.text()
+    assert told.startswith(f"x = {x + 1}, y = {y + 1}, z = {z + 1}")
+    assert f"grain {label}: {sizes[label]:,} voxels" in told
     picture = page.slices.grains.frame.view.picture().astype(int)
     coloured = np.ptp(picture, axis=2) > 60
     assert 0.02 < coloured.mean() < 0.9

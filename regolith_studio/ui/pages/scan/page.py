@@ -36,6 +36,7 @@ from regolith_studio.ui.pages.scan.tools import Brush, BrushPanel, EditsPanel, O
 from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
 from regolith_studio.ui.run_controller import RunController
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.result_view import ResultRecord
 
 DELAY = 120
 """Milliseconds from the last change to the preview."""
@@ -322,6 +323,7 @@ class ScanPage(PageWidget):
     def _show_grains(self, found: GrainSegmentation, settings: SegmentationSettings) -> None:
         assert self.scan is not None
         self.preview.forget()
+        self.workflow.card.show_record(ResultRecord())  # it runs no more
         self._found_with = settings
         self.corrections.begin(self.scan.volume, found, settings)
         self.controls.show_automatic_level(found.segmentation.level)

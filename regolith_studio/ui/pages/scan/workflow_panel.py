@@ -35,7 +35,7 @@ class WorkflowPanel(QWidget):
             "scan_sample", tr("Sample scan"), tr("Open the scan that ships with the program")
         )
         captions = (tr("Grains"), tr("Share of the volume"))
-        self.card = ResultView("scan_grains", captions, tr("Find all grains"), tr("Find again"), lines=4)
+        self.card = ResultView("scan_grains", captions, tr("Find all grains"), tr("Find again"))
         self.search, self.found = self.card.button, self.card.sentence
         self.save = button(
             "scan_save_labels",
