@@ -12,6 +12,7 @@ from regolith_studio.imaging.segmentation.object_classifier import (
     classify_objects,
     describe_objects,
     split_again,
+    suspect_objects,
     train_on_examples,
 )
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment, segmentation_steps
@@ -182,3 +183,18 @@ def test_that_a_damaged_file_gets_one_sentence(found, change, words):
     document = objects_document(train_on_examples(table, labels, examples_of(kinds, centres, 1)))
     with pytest.raises((FileError, InputError), match=words):
         objects_from(document | change, "objects.json")
+
+
+def test_that_an_l_and_a_speck_among_cubes_are_suspect():
+    labels = np.zeros((60, 60, 14), dtype=np.int32)
+    for number in range(16):
+        x, y = 2 + 14 * (number % 4), 2 + 14 * (number // 4)
+        edge = {5: 2, 15: 10}.get(number, 7 + number % 3)
+        labels[x : x + edge, y : y + edge, 2 : 2 + edge] = number + 1
+        if number == 15:
+            labels[x + 3 :, y + 3 :] = 0
+    volume = Volume(labels, np.ones(3), "labels", "cubes")
+    found = suspect_objects(result_of(describe_objects(volume, Volume(labels, np.ones(3), "grey", "cubes"))))
+    assert {(each.label, each.by_size) for each in found[:2]} == {(6, True), (16, False)}
+    assert {each.n_voxels for each in found[:2]} == {8, 510}
+    assert all((labels[each.box] == each.label).any() for each in found)
