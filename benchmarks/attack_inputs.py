@@ -160,6 +160,8 @@ def attack_inputs(folder: Path, share: float = 1.0, seed: int = 0) -> dict[str, 
     random = np.random.default_rng(seed)
     inputs, place = folder / "inputs", folder / "place" / "deep"
     inputs.mkdir()
+    with redirect_stdout(io.StringIO()):
+        run(["warm-up"])  # kernels, which take longer than a minute once after an installation
     for number, (kind, words) in enumerate(cases(inputs)):
         if random.random() >= share:
             continue
