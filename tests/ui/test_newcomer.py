@@ -274,7 +274,7 @@ def test_that_a_folder_of_one_s_own_becomes_a_polyhedron_with_its_errors(newcome
 @pytest.mark.slow
 def test_that_a_scan_becomes_grains_in_a_table(newcomer):
     newcomer.click(QWidget, "page_scan")
-    for name in ("scan_sample", "scan_find", "scan_make", "scan_show"):
+    for name in ("scan_sample", "scan_grains_button", "scan_make", "scan_show"):
         newcomer.click(QPushButton, name)
         newcomer.rest()
     assert newcomer.window.pages.current == "sample"
