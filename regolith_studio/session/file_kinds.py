@@ -38,6 +38,21 @@ _BY_FORMAT = {
 }
 
 
+def volume_suffixes() -> tuple[str, ...]:
+    """Endings of files that are volumes."""
+    from regolith_studio.readers import volume_formats  # loads every one of them
+
+    return tuple(volume_formats.volume_suffixes())
+
+
+def openable_suffixes() -> tuple[str, ...]:
+    """Endings of all files that can be opened, each once."""
+    tables = (*TABLE_SUFFIXES, *TEXT_SUFFIXES)
+    return tuple(
+        dict.fromkeys((*mesh_suffixes(), *tables, *volume_suffixes(), SUFFIX_OF_ARCHIVES, SUFFIX, ".json"))
+    )
+
+
 def kind_of(path: Path) -> FileKind:
     """What a path leads to; what is not there or cannot be read has the kind of its name."""
     name = path.name.lower()
@@ -49,9 +64,7 @@ def kind_of(path: Path) -> FileKind:
         return _kind_of_json(path)
     if name.endswith((*mesh_suffixes(), SUFFIX_OF_ARCHIVES, *TABLE_SUFFIXES, *TEXT_SUFFIXES)):
         return FileKind.PARTICLES
-    from regolith_studio.readers.volume_formats import volume_suffixes  # loads every one of them
-
-    return FileKind.VOLUME if name.endswith(tuple(volume_suffixes())) else FileKind.UNKNOWN
+    return FileKind.VOLUME if name.endswith(volume_suffixes()) else FileKind.UNKNOWN
 
 
 def kind_of_all(paths: Sequence[Path]) -> FileKind:
@@ -60,8 +73,7 @@ def kind_of_all(paths: Sequence[Path]) -> FileKind:
     if FileKind.UNKNOWN in kinds:
         lost = paths[kinds.index(FileKind.UNKNOWN)].name
         raise InputError(
-            f"{lost} cannot be opened here: meshes, tables of coefficients, volumes, datasets, "
-            "projects, recipes, fits and models can."
+            f"{lost}: not a mesh, table of coefficients, volume, dataset, project, recipe, fit or model."
         )
     if len(set(kinds)) > 1:
         raise InputError(

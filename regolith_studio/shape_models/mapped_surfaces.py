@@ -224,9 +224,7 @@ class SurfaceSettings:
     """
 
     l_max: int = 30
-    size_jitter: float = setting(
-        0.02, N_("Size jitter"), N_("Deviation in ln r_eq."), maximum=1.0, decimals=3
-    )
+    size_jitter: float = setting(0.02, N_("Size noise"), N_("Deviation in ln r_eq."), maximum=1.0, decimals=3)
 
 
 @dataclass(frozen=True, eq=False)

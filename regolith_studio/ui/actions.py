@@ -112,7 +112,7 @@ ROWS: tuple[ActionSpec, ...] = (
         N_("&Open …"),
         icon="open",
         shortcut="Ctrl+O",
-        tip=N_("Open meshes, folders, volumes or positions"),
+        tip=N_("Open files of any kind"),
         bar="words",
         menu=FILE,
     ),

@@ -22,7 +22,7 @@ from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.particles import all_state_unit, has_tables
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.code_export import as_command, as_python
-from regolith_studio.session.file_kinds import FileKind, kind_of_all
+from regolith_studio.session.file_kinds import FileKind, kind_of_all, openable_suffixes, volume_suffixes
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, input_shown, inputs_of
 from regolith_studio.session.provenance import (
@@ -42,9 +42,10 @@ from regolith_studio.ui.page_history import PageHistory
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
-MESH_FILTERS = (
+FILTERS = (
     N_("Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.zip *.anm *.sh *.shc)"),
     N_("Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)"),
+    N_("Datasets (dataset.json)"),
     N_("Projects (*.regolith)"),
     N_("Recipes (*.json)"),
     N_("All files (*)"),
@@ -95,9 +96,12 @@ class Commands(QObject):
         session.events.left_out.connect(toast.notes)
 
     def open(self) -> None:
-        """Ask for files and open them."""
-        kinds = ";;".join(map(tr, MESH_FILTERS))
-        names, _ = QFileDialog.getOpenFileNames(self._window, tr("Open particles"), self._folder(), kinds)
+        """Ask for files of any kind and open them, each kind on its page."""
+        volumes = " ".join(f"*{suffix}" for suffix in volume_suffixes())
+        every = " ".join(f"*{suffix}" for suffix in openable_suffixes())
+        first = (tr("All that can be opened ({suffixes})", suffixes=every),)
+        kinds = (*first, tr("Volumes ({suffixes})", suffixes=volumes), *map(tr, FILTERS))
+        names, _ = QFileDialog.getOpenFileNames(self._window, tr("Open"), self._folder(), ";;".join(kinds))
         self.open_paths([Path(name) for name in names])
 
     def open_folder(self) -> None:

@@ -568,6 +568,10 @@
         <translation>Alle Partikel: Tabelle, Streudiagramm, Zustand der Netze und Statistik der Gruppen</translation>
     </message>
     <message>
+        <source>All that can be opened ({suffixes})</source>
+        <translation>Alles, was geöffnet werden kann ({suffixes})</translation>
+    </message>
+    <message>
         <source>All weighted descriptors are met but {symbol}: no convex polyhedron is below {error}.</source>
         <translation>Alle gewichteten Deskriptoren sind getroffen außer {symbol}: Kein konvexes Polyeder liegt unter {error}.</translation>
     </message>
@@ -862,6 +866,10 @@
     <message>
         <source>Cancel</source>
         <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Candidates</source>
+        <translation>Kandidaten</translation>
     </message>
     <message>
         <source>Cards (*.json)</source>
@@ -1446,6 +1454,10 @@
     <message>
         <source>Dataset</source>
         <translation>Datensatz</translation>
+    </message>
+    <message>
+        <source>Datasets (dataset.json)</source>
+        <translation>Datensätze (dataset.json)</translation>
     </message>
     <message>
         <source>Datasets of the steps</source>
@@ -2956,6 +2968,10 @@
         <translation>Hell</translation>
     </message>
     <message>
+        <source>Limit the equivalent radius</source>
+        <translation>Äquivalentradius begrenzen</translation>
+    </message>
+    <message>
         <source>Limit the sizes</source>
         <translation>Größen begrenzen</translation>
     </message>
@@ -3324,8 +3340,8 @@
         <translation>Modelle werden an gemessenen Partikeln ausgewertet: passen Sie zuerst eines an eine Probe an.</translation>
     </message>
     <message>
-        <source>Models are fitted to one half of the sample and evaluated on the other, beside the sampling noise.</source>
-        <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen ausgewertet, neben dem Rauschen der Stichprobe.</translation>
+        <source>Models are fitted to one half of the sample and evaluated on the other, compared with sampling noise.</source>
+        <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen bewertet, verglichen mit dem Stichprobenrauschen.</translation>
     </message>
     <message>
         <source>Moon</source>
@@ -3740,10 +3756,6 @@
         <translation>Nur 3MF und glTF nennen ihre Einheit. Die Antwort wird für den Ordner behalten.</translation>
     </message>
     <message>
-        <source>Only equivalent radii from … to …</source>
-        <translation>Nur Äquivalentradien von … bis …</translation>
-    </message>
-    <message>
         <source>Only grains are painted; paint some of what is between them, too.</source>
         <translation>Nur Körner sind gemalt; malen Sie auch etwas von dem, was dazwischen liegt.</translation>
     </message>
@@ -3754,6 +3766,10 @@
     <message>
         <source>Only {count} of {total} sections through the heap have two straight flanks.</source>
         <translation>Nur {count} von {total} Schnitten durch die Schüttung haben zwei gerade Flanken.</translation>
+    </message>
+    <message>
+        <source>Open</source>
+        <translation>Öffnen</translation>
     </message>
     <message>
         <source>Open &amp;dataset …</source>
@@ -3860,12 +3876,12 @@
         <translation>Offene Kanten</translation>
     </message>
     <message>
-        <source>Open folder</source>
-        <translation>Ordner öffnen</translation>
+        <source>Open files of any kind</source>
+        <translation>Dateien jeder Art öffnen</translation>
     </message>
     <message>
-        <source>Open meshes, folders, volumes or positions</source>
-        <translation>Netze, Ordner, Volumen oder Positionen öffnen</translation>
+        <source>Open folder</source>
+        <translation>Ordner öffnen</translation>
     </message>
     <message>
         <source>Open particles</source>
@@ -5276,8 +5292,8 @@
         <translation>Größenverteilung</translation>
     </message>
     <message>
-        <source>Size jitter</source>
-        <translation>Größenstreuung</translation>
+        <source>Size noise</source>
+        <translation>Größenrauschen</translation>
     </message>
     <message>
         <source>Size of letters</source>
@@ -5646,10 +5662,6 @@
     <message>
         <source>Surface energy</source>
         <translation>Oberflächenenergie</translation>
-    </message>
-    <message>
-        <source>Surfaces tried</source>
-        <translation>Versuchte Oberflächen</translation>
     </message>
     <message>
         <source>Suspect grains</source>
@@ -6288,10 +6300,6 @@
         <translation>Der Rand schneidet sie an. Die übrigen haben dann größere Gewichte (Miles-Lantuéjoul).</translation>
     </message>
     <message>
-        <source>They are expanded in spherical harmonics first.</source>
-        <translation>Sie werden zuerst nach Kugelflächenfunktionen entwickelt.</translation>
-    </message>
-    <message>
         <source>Thickness</source>
         <translation>Dicke</translation>
     </message>
@@ -6618,6 +6626,10 @@
     <message>
         <source>Volume, surface area, aspect ratio</source>
         <translation>Volumen, Oberfläche, Seitenverhältnis</translation>
+    </message>
+    <message>
+        <source>Volumes ({suffixes})</source>
+        <translation>Volumen ({suffixes})</translation>
     </message>
     <message>
         <source>Volumes ({suffixes});;All files (*)</source>

@@ -266,3 +266,14 @@ def test_that_the_unit_of_a_particle_without_a_file_is_refused(opening):
     session.adopt([Particle("drawn", icosphere(1))])
     commands.change_unit("drawn")
     assert "drawn was not read from a file" in window.findChild(Toast).sentence.text()
+
+
+def test_that_one_dialog_lists_every_kind_of_file(opening, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        "regolith_studio.ui.commands.QFileDialog.getOpenFileNames",
+        lambda *given: (asked.append(given[3]), ([], ""))[1],
+    )
+    opening[0].open()
+    first = asked[0].split(";;")[0]
+    assert {"*.stl", "*.csv", "*.tif", "*.regolith", "*.json"} <= set(first.split("(")[1].rstrip(")").split())

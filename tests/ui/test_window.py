@@ -161,7 +161,7 @@ def test_that_meshes_are_left_as_they_are_where_the_menu_says_so(window, wait, t
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        (("thesis.docx",), "thesis.docx cannot be opened here"),
+        (("thesis.docx",), "thesis.docx: not a mesh"),
         pytest.param(("a.stl", "b.tif"), "several kinds", marks=pytest.mark.slow),
         pytest.param(("a.tif", "b.tif"), "2 files", marks=pytest.mark.slow),
     ],

@@ -236,7 +236,7 @@ class RecombinedSettings(SurfaceSettings):
         minimum=1,
     )
     n_candidates: int = setting(
-        32, N_("Surfaces tried"), N_("The one with the nearest sphericity is kept."), minimum=1
+        32, N_("Candidates"), N_("The one with the nearest sphericity is kept."), minimum=1
     )
 
 

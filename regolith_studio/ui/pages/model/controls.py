@@ -175,7 +175,7 @@ class DrawControls(QWidget):
         super().__init__()
         self.setObjectName("model_draw")
         self.number, self.seed = QSpinBox(), QSpinBox()
-        self.limited = QCheckBox(tr("Only equivalent radii from … to …"))
+        self.limited = QCheckBox(tr("Limit the equivalent radius"))
         self.smallest, self.largest = DecimalField(), DecimalField()
         self.draw, self.adopt = QPushButton(tr("Draw")), QPushButton(tr("Use as population"))
         self.findings = hint_label()

@@ -242,7 +242,7 @@ def _item(cell: Cell) -> QTableWidgetItem:
 
 
 WAITING = N_(
-    "Models are fitted to one half of the sample and evaluated on the other, beside the sampling noise."
+    "Models are fitted to one half of the sample and evaluated on the other, compared with sampling noise."
 )
 FIGURES = {
     "number": N_("By number"),

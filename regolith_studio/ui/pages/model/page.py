@@ -136,7 +136,7 @@ class SourceBox:
     def kind(self, key: str) -> SourceKind:
         """The source of a key."""
         if key == OPEN_PARTICLES:
-            return SourceKind("", FIT_DEGREE, tr("They are expanded in spherical harmonics first."))
+            return SourceKind("", FIT_DEGREE, "")
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
