@@ -237,7 +237,8 @@ def _warnings(falls: int, bend: float, slip: float) -> list[str]:
     sentences: list[str] = []
     if falls < MIN_AVALANCHES:
         template = N_(
-            "The surface flows steadily: {count} avalanches are too few for an upper and a lower angle."
+            "{count} avalanches are too few for an upper and a lower angle: turn longer, unless the "
+            "surface flows steadily."
         )
         sentences.append(Message(template, count=falls))
     if abs(bend) > MAX_BEND:

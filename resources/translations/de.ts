@@ -6204,10 +6204,6 @@
         <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder abgelehnt.</translation>
     </message>
     <message>
-        <source>The surface flows steadily: {count} avalanches are too few for an upper and a lower angle.</source>
-        <translation>Die Oberfläche fließt stetig: {count} Lawinen sind zu wenige für einen oberen und einen unteren Winkel.</translation>
-    </message>
-    <message>
         <source>The surface is curved, by {bend} degrees over its middle; the angle is that of the middle.</source>
         <translation>Die Oberfläche ist gekrümmt, um {bend} Grad über ihre Mitte; der Winkel ist der der Mitte.</translation>
     </message>
@@ -8414,6 +8410,10 @@
     <message>
         <source>{counts} at {threshold}; {small} too small. {voxels} voxels hold no finite number (NaN or infinity) and are in no grain.</source>
         <translation>{counts} bei {threshold}; {small} zu klein. {voxels} Voxel enthalten keine endliche Zahl (NaN oder unendlich) und liegen in keinem Korn.</translation>
+    </message>
+    <message>
+        <source>{count} avalanches are too few for an upper and a lower angle: turn longer, unless the surface flows steadily.</source>
+        <translation>{count} Lawinen sind zu wenige für einen oberen und einen unteren Winkel: länger drehen, es sei denn, die Oberfläche fließt stetig.</translation>
     </message>
     <message>
         <source>{count} faces are duplicated.</source>
