@@ -17,9 +17,16 @@ MIN_TILT_SCALE = 0.08
 
 def tangents_of(normals: FloatArray) -> FloatArray:
     """Two tangents of each plane, shape (n, 2, 3)."""
-    first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    rows, least = np.arange(len(normals)), np.abs(normals).argmin(axis=1)
+    one, two = (least + 1) % 3, (least + 2) % 3
+    tangents = np.zeros((len(normals), 2, 3))
+    first = tangents[:, 0]
+    first[rows, one], first[rows, two] = normals[rows, two], -normals[rows, one]
     first /= np.sqrt((first * first).sum(axis=1))[:, None]
-    return np.stack([first, np.cross(normals, first)], axis=1)
+    # np.cross takes ten times as long for so few
+    turned, again = [1, 2, 0], [2, 0, 1]
+    tangents[:, 1] = normals[:, turned] * first[:, again] - normals[:, again] * first[:, turned]
+    return tangents
 
 
 @kernel_noalloc

@@ -148,7 +148,7 @@ def _descended(
     """Where a descent ends; ``None`` where the half-spaces bound no union."""
     normals, offsets = np.array(planes.normals), np.array(planes.offsets)
     memory: Memory = memory_for(len(offsets), 0, planes)
-    tangents = np.ascontiguousarray(tangents_of(normals))
+    tangents = tangents_of(normals)
     sound, merit, worst, distance = descend(
         lines, prices, axes, steps, radius, 0, False, False, normals, offsets, tangents, memory
     )

@@ -36,8 +36,9 @@ from regolith_studio.coarsening.optimiser.body import (
     Prices,
     copy_boxes,
     fill_body,
+    fill_box_terms,
 )
-from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
+from regolith_studio.coarsening.optimiser.followed_boxes import add_box, check_boxes
 from regolith_studio.coarsening.optimiser.memory import Memory, Rays, Steps
 from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
 from regolith_studio.geometry.arrays import FloatArray
@@ -53,8 +54,9 @@ KEPT = 20.0
 CLEARANCE, PRESSING = 2e-4, 1e-4
 """Rivals are brought above the measured box by the first share of its volume, and cost below the second: the
 way between them keeps rivals that only come near from deciding over steps."""
-CHECK_EVERY = 8
-"""Accepted steps between two searches for smaller boxes."""
+CHECK_EVERY, CHECK_SHARE = 8, 6
+"""Accepted steps between two searches for smaller boxes: at least so many, and a half-space in so many, as a
+search takes longer than a step where there are many."""
 SOFTNESS = 0.05
 """Added to second derivatives of a union: hidden facets have none of their own."""
 MET = 1e-9
@@ -92,7 +94,8 @@ def descend(
     ----------
     start_axes
         Of the particle's box, one a row: the box of the polyhedron that lies like it is measured, where it is
-        nearly the least; shape (3, 3).
+        nearly the least; shape (3, 3). Where only what is kept is restored, those of the box before: whether
+        another is smaller is asked at the end.
     max_steps, radius
         Of the descent; the radius is the longest move of a plane in a step, at first.
     held
@@ -126,14 +129,19 @@ def descend(
         needs_box = needs_box or prices.low[r] < prices.high[r]
     if not fill_body(here, prices.wanted, needs_box, scratch):
         return False, np.inf, np.inf, 1.0
-    if needs_box:
+    unchecked, check_every = 0, max(CHECK_EVERY, len(offsets) // CHECK_SHARE)
+    if needs_box and restoring:
+        add_box(here, start_axes, scratch)
+        fill_box_terms(here, prices.wanted, scratch)
+        unchecked = 1
+    elif needs_box:
         check_boxes(here, prices, start_axes, boxes, scratch)
     fill_overlap(here, here.parts, rays, work)
     pull = 0.0 if restoring else prices.overlap
     fill_overlap_gradient(here, here.parts, rays, pull, work, work.gradient)
     fill_first_metric(here, prices.overlap, held, steady, work)
     merit = merit_of(here, prices)
-    unchecked, failures, small = 0, 0, 0
+    failures, small = 0, 0
     for _ in range(max_steps):
         counts[STEPS] += 1
         gain, length = _step(here, there, rays, prices, pull, needs_box, radius, merit, scratch, work)
@@ -151,7 +159,7 @@ def descend(
                 fill_first_metric(here, prices.overlap, held, steady, work)
                 radius, failures, small = RESTART_RADIUS, failures + 2, small + (failures > 3)
         done = small >= 2 or failures > 8
-        if needs_box and (unchecked >= CHECK_EVERY or (done and unchecked > 0)):
+        if needs_box and (unchecked >= check_every or (done and unchecked > 0)):
             unchecked, counts[CHECKS] = 0, counts[CHECKS] + 1
             if check_boxes(here, prices, start_axes, boxes, scratch):
                 merit, done, small, failures = merit_of(here, prices), False, 0, 0

@@ -414,7 +414,7 @@ class Search:
             if cuts == 0 or failures == len(CUT_DEPTHS):
                 break
             cut = with_cuts(self._target, best.half_spaces, cuts, CUT_DEPTHS[failures], best.axes)
-            more = self._descended(cut, CUT_STEPS, CUT_RADIUS, steady=True, restoring=True)
+            more = self._descended(cut, CUT_STEPS, CUT_RADIUS, steady=True, restoring=True, axes=best.axes)
             worse = more is None or more.merit > most or (found.met and not more.met)
             if more is None or worse or more.n_facets <= best.n_facets:
                 failures += cuts == 1
@@ -431,16 +431,20 @@ class Search:
         held: int = 0,
         steady: bool = False,
         restoring: bool = False,
+        axes: FloatArray | None = None,
     ) -> Candidate | None:
+        """Where a descent ends; `axes` are those of the box to begin with, if not the particle's."""
         planes = _planes_of(start)
         radius /= np.sqrt(len(start.offsets))
-        sound, merit, worst, _ = self._descend(self._prices, planes, steps, radius, held, steady, restoring)
+        sound, merit, worst, _ = self._descend(
+            self._prices, planes, steps, radius, held, steady, restoring, axes
+        )
         if not sound:
             return None
         n_real = int(np.count_nonzero(measure_polyhedron(planes[0], planes[1]).areas >= MIN_FACET))
         needs_box = bool((self._prices.low[2:] < self._prices.high[2:]).any())
-        axes = self._memory[len(start.offsets)].scratch.start.copy() if needs_box else None
-        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, n_real, axes)
+        box = self._memory[len(start.offsets)].scratch.start.copy() if needs_box else None
+        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, n_real, box)
 
     def _descend(
         self,
@@ -451,12 +455,13 @@ class Search:
         held: int = 0,
         steady: bool = False,
         restoring: bool = False,
+        axes: FloatArray | None = None,
     ) -> tuple[bool, float, float, float]:
         normals, offsets, tangents = planes
         size = len(offsets)
         if size not in self._memory:
             self._memory[size] = memory_for(size, len(self._rays.directions))
-        axes, memory = self._target.box.axes, self._memory[size]
+        axes, memory = self._target.box.axes if axes is None else axes, self._memory[size]
         return descend(
             self._rays,
             prices,
@@ -565,4 +570,4 @@ def more_surface_than_hull(target: Target) -> float:
 def _planes_of(start: HalfSpaces) -> Planes:
     """Normals, offsets and tangents of half-spaces, to be changed in place."""
     normals = np.array(start.normals)
-    return normals, np.array(start.offsets), np.ascontiguousarray(tangents_of(normals))
+    return normals, np.array(start.offsets), tangents_of(normals)
