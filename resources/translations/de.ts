@@ -2772,6 +2772,14 @@
         <translation>Volumen erhalten</translation>
     </message>
     <message>
+        <source>Keep {name} exactly</source>
+        <translation>{name} genau einhalten</translation>
+    </message>
+    <message>
+        <source>Keep {name} exactly. Without, an error costs its weight; only exact methods can.</source>
+        <translation>{name} genau einhalten. Ohne dies kostet ein Fehler sein Gewicht; nur exakte Methoden können es.</translation>
+    </message>
+    <message>
         <source>Keep, split or drop the grains by their class</source>
         <translation>Körner nach ihrer Klasse behalten, teilen oder verwerfen</translation>
     </message>

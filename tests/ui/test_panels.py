@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSli
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.settings import CoarseningSettings
-from regolith_studio.coarsening.weights import LossWeights, presets
+from regolith_studio.coarsening.weights import KEPT, LossWeights, presets
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle
@@ -122,6 +122,31 @@ def test_that_a_weight_that_is_moved_marks_the_preset_as_modified_and_reset_unma
     QTest.mouseClick(panel.reset, Qt.MouseButton.LeftButton)
     assert heard[-1] == {"weights": presets()["all"].weights, "preset": "all"}
     assert "(modified)" not in panel.preset.currentText()
+
+
+def test_that_a_lock_beside_a_weight_keeps_its_descriptor(shown):
+    panel, heard = shown(LossPanel()), []
+    panel.setValue({"weights": presets()["all"].weights, "preset": "all"})
+    assert {key for key, lock in panel.locks.items() if lock.isChecked()} == set(KEPT)
+    panel.valueChanged.connect(heard.append)
+    QTest.mouseClick(panel.locks["sphericity"], Qt.MouseButton.LeftButton)
+    assert heard[-1]["weights"].keep == set(KEPT) - {"sphericity"}
+    assert heard[-1]["weights"]["sphericity"] == 1.0
+    assert "weighed: Jaccard distance, sphericity" in panel.origin.text()
+    QTest.mouseClick(panel.locks["sphericity"], Qt.MouseButton.LeftButton)
+    assert heard[-1]["weights"] == presets()["all"].weights
+    panel.setValue({"weights": LossWeights.of(volume=1), "preset": "all"})
+    assert {key for key, lock in panel.locks.items() if lock.isChecked()} == {"volume"}
+
+
+def test_that_methods_that_know_weights_only_have_no_locks(shown):
+    panel = shown(LossPanel())
+    panel.setValue({"weights": presets()["all"].weights, "preset": "all"})
+    panel.set_keeps_terms(False)
+    assert not any(lock.isEnabled() or lock.isChecked() for lock in panel.locks.values())
+    assert "keeps" not in panel.origin.text()
+    panel.set_keeps_terms(True)
+    assert panel.locks["volume"].isChecked()
 
 
 def test_that_there_is_a_slider_for_every_term_of_the_loss(shown):
@@ -306,15 +331,12 @@ def test_that_a_line_is_drawn_across_a_bar_where_it_cannot_be_lower(shown):
 
 def test_that_the_smallest_l_max_follows_the_error_that_is_allowed(shown):
     panel = shown(LmaxStudyPanel())
-    assert not panel.answer.isVisible()
     errors = np.array([[[0.2, 0.1], [0.04, 0.06], [0.01, 0.02]]])
-    panel.show_study(LmaxStudy((2, 6, 10), ("volume", "sphericity"), ("a",), ("",), errors), False)
-    assert panel.answer.isVisible()
-    assert panel.answer.text().endswith(">10</b>")
-    panel.tolerance.setValue(7.0)
-    assert panel.answer.text().endswith(">6</b>")
-    panel.tolerance.setValue(0.5)
-    assert panel.answer.text() == "none of these"
+    study = LmaxStudy((2, 6, 10), ("volume", "sphericity"), ("a",), ("",), errors)
+    for tolerance, smallest, note in ((5.0, "10", ""), (7.0, "6", ""), (0.5, "–", "none of these")):
+        panel.tolerance.setValue(tolerance)
+        record = panel.record(study, Choices())
+        assert (record.values, record.note) == ((smallest,), note)
 
 
 @pytest.mark.parametrize("steps", [1, 2, 100])

@@ -8,6 +8,7 @@ from functools import partial
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
@@ -254,6 +255,7 @@ class ExplorePage(PageWidget):
         bindings.refresh(
             "particles choices", lambda: self.three_views.show_particle(session.selected), PARTICLE_CHOICES
         )
+        bindings.refresh("choices", self._show_locks, ("method",))
         bindings.refresh("fit", self._show_star_point)
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
         bindings.refresh("descriptors", self._check_fit, slow=True)
@@ -267,6 +269,9 @@ class ExplorePage(PageWidget):
         )
         self.particles.unitRequested.connect(context.commands.change_unit)
         self.plots.wire(session, bindings)
+
+    def _show_locks(self) -> None:
+        self.loss.set_keeps_terms(METHODS[self._session.choices.method].keeps_terms)
 
     def _set_section(self, shown: bool) -> None:
         self.three_views.sections.set_shown(shown)

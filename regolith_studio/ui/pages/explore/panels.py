@@ -5,11 +5,11 @@ from dataclasses import fields
 from typing import Any
 
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.reasons import kept_sentence
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
-from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.messages import N_
@@ -117,8 +117,20 @@ def weight_spec(key: str) -> NumberSpec:
     return NumberSpec(label, words, 0.0, SLIDER_END, 0.05, limit=LARGEST, tip=tip)
 
 
+def lock_of(key: str) -> QToolButton:
+    """The button that keeps a descriptor exactly."""
+    name = tr(CATALOGUE[key].label)
+    lock = QToolButton(text="=", checkable=True, autoRaise=True)
+    lock.setObjectName(f"keep_{key}")
+    lock.setAccessibleName(tr("Keep {name} exactly", name=name))
+    lock.setToolTip(
+        tr("Keep {name} exactly. Without, an error costs its weight; only exact methods can.", name=name)
+    )
+    return lock
+
+
 class LossPanel(QWidget):
-    """Edits the weights, and the shipped preset that they come from.
+    """Edits the weights, which descriptors are kept exactly, and the shipped preset that they come from.
 
     An own preset is a set of weights with the shipped preset that it is derived from. The rest of the program
     sees that preset with modified weights, so that recipes and projects do not depend on own presets.
@@ -139,6 +151,8 @@ class LossPanel(QWidget):
         self.preset, self.reset = self.bar.box, self.bar.reset
         self.reset.setObjectName("reset_weights")
         self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
+        self.locks = {key: lock_of(key) for key in LOSS_KEYS}
+        self._keeps_terms = True
         self.origin = hint_label()
         self._arrange()
         self._connect()
@@ -157,6 +171,13 @@ class LossPanel(QWidget):
         self._keep = value["weights"].keep
         self._preset = value["preset"]
         self._chosen = self._source(value["weights"])
+        self._show_mark()
+
+    def set_keeps_terms(self, able: bool) -> None:
+        """Whether the method can keep descriptors exactly, or knows their weights only."""
+        self._keeps_terms = able
+        for lock in self.locks.values():
+            lock.setEnabled(able)
         self._show_mark()
 
     def is_modified(self) -> bool:
@@ -218,6 +239,8 @@ class LossPanel(QWidget):
             slider.slider.setObjectName(f"weight_{key}_slider")
             slider.field.setObjectName(f"weight_{key}")
             grid.addWidget(slider, row, 0)
+            if key in self.locks:
+                grid.addWidget(self.locks[key], row, 1)
         align_labels(self.sliders.values())
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -233,12 +256,21 @@ class LossPanel(QWidget):
         for slider in self.sliders.values():
             slider.valueChanged.connect(self._announce)
             slider.editingFinished.connect(self.editingFinished)
+        for lock in self.locks.values():
+            lock.clicked.connect(self._take_locks)
 
     def _take(self, key: str) -> None:
         preset = self._known[key]
         self._chosen = key
         self.setValue({"weights": preset.weights, "preset": preset.name})
         self.valueChanged.emit(self.value())
+        self.editingFinished.emit()
+
+    def _take_locks(self) -> None:
+        locked = frozenset(key for key, lock in self.locks.items() if lock.isChecked())
+        usual = self.value()["weights"].keeping(None).kept
+        self._keep = None if locked == usual else locked
+        self._announce()
         self.editingFinished.emit()
 
     def _announce(self) -> None:
@@ -254,7 +286,11 @@ class LossPanel(QWidget):
             if self.is_modified()
             else tr(preset.origin) + "."
         )
-        self.origin.setText(f"{origin} {translate(kept_sentence(self.value()['weights']))}")
+        weights = self.value()["weights"]
+        kept = translate(kept_sentence(weights)) if self._keeps_terms else ""
+        self.origin.setText(f"{origin} {kept}".rstrip())
+        for key, lock in self.locks.items():
+            lock.setChecked(self._keeps_terms and key in weights.kept)
 
 
 class AssessmentPanel(ResultView):
