@@ -64,8 +64,8 @@ def redundant_planes(coarsened: CoarseningResult) -> str | None:
     """How many of the planes bound a facet, where some do not; else ``None``."""
     if coarsened.n_facets >= coarsened.n_facets_asked:
         return None
-    template = N_("{real} of {asked} planes bound a facet: the others are redundant.")
-    return Message(template, real=coarsened.n_facets, asked=coarsened.n_facets_asked)
+    template = N_("The result has {real} facets instead of {faces}: the other planes bound none.")
+    return Message(template, real=coarsened.n_facets, faces=coarsened.n_facets_asked)
 
 
 def cost_of_imitating_the_fit(comparison: ParticleComparison) -> str:

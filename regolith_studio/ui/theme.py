@@ -60,8 +60,8 @@ LIGHT = Theme(
     particle="#8d8a84",
     fit=palette.FIT,
     polyhedron=palette.POLYHEDRON,
-    good="#00805f",
-    doubtful="#b36b00",
+    good="#007c5c",
+    doubtful="#9c5d00",
     bad="#c23b00",
     surroundings=palette.LIGHT,
 )

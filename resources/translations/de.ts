@@ -1872,8 +1872,8 @@
         <translation>Fehler von Fit und Polyeder</translation>
     </message>
     <message>
-        <source>Errors still fall at {count} facets</source>
-        <translation>Fehler sinken bei {count} Facetten noch</translation>
+        <source>Errors still fall at {count} facets.</source>
+        <translation>Fehler sinken bei {count} Facetten noch.</translation>
     </message>
     <message>
         <source>Euler number</source>
@@ -3596,8 +3596,8 @@
         <translation>Nichts</translation>
     </message>
     <message>
-        <source>Nothing is gained beyond {count} facets</source>
-        <translation>Ab {count} Facetten kein Gewinn mehr</translation>
+        <source>Nothing is gained beyond {count} facets.</source>
+        <translation>Ab {count} Facetten kein Gewinn mehr.</translation>
     </message>
     <message>
         <source>Nothing is painted yet: paint some voxels of grains and some of what is between them.</source>
@@ -6104,6 +6104,10 @@
         <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
     </message>
     <message>
+        <source>The result has {real} facets instead of {faces}: the other planes bound none.</source>
+        <translation>Das Ergebnis hat {real} statt {faces} Facetten: die übrigen Ebenen begrenzen keine.</translation>
+    </message>
+    <message>
         <source>The result has {real} facets instead of {faces}: the particle is a convex polyhedron with {real} facets itself.</source>
         <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist selbst ein konvexes Polyeder mit {real} Facetten.</translation>
     </message>
@@ -6538,10 +6542,6 @@
     <message>
         <source>Use {count} facets</source>
         <translation>{count} Facetten verwenden</translation>
-    </message>
-    <message>
-        <source>Use {count} facets: more do not help</source>
-        <translation>{count} Facetten verwenden: mehr helfen nicht</translation>
     </message>
     <message>
         <source>Usually 10.</source>
@@ -8814,10 +8814,6 @@
     <message>
         <source>{problem} All particles are shown.</source>
         <translation>{problem} Alle Partikel sind zu sehen.</translation>
-    </message>
-    <message>
-        <source>{real} of {asked} planes bound a facet: the others are redundant.</source>
-        <translation>{real} von {asked} Ebenen begrenzen eine Facette: die übrigen sind überzählig.</translation>
     </message>
     <message>
         <source>{row}, {column}: {before:.3g} % becomes {after:.3g} %</source>

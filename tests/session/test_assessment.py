@@ -11,7 +11,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening_jobs import ParticleComparison
-from regolith_studio.session.assessment import assess_polyhedron
+from regolith_studio.session.assessment import assess_polyhedron, redundant_planes
 
 MET = dict.fromkeys(LOSS_KEYS, 1e-7)
 NO_BOUNDS = dict.fromkeys((*LOSS_KEYS, "jaccard_distance"), 0.0)
@@ -42,6 +42,12 @@ def test_that_what_no_convex_polyhedron_can_meet_is_no_fault_of_this_one(coarsen
     assert "All weighted descriptors are met but CH" in assess_polyhedron(found, ALL).sentence
     everything = replace(coarsened, errors=MET, bounds=NO_BOUNDS)
     assert assess_polyhedron(everything, ALL).sentence == "All weighted descriptors are met within 0.1 %."
+
+
+def test_that_facets_are_counted_where_planes_bound_none(coarsened: CoarseningResult) -> None:
+    assert redundant_planes(coarsened) is None
+    found = redundant_planes(replace(coarsened, n_facets_asked=20))
+    assert found == "The result has 12 facets instead of 20: the other planes bound none."
 
 
 def test_that_the_particle_itself_and_fewer_facets_are_named(coarsened: CoarseningResult) -> None:

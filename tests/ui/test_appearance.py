@@ -234,6 +234,15 @@ def contrast(one, other):
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
+@pytest.mark.parametrize("name", ["text", "muted", "good", "doubtful", "bad"])
+def test_that_coloured_text_can_be_read_on_every_ground(theme, name):
+    """WCAG 2.2, 1.4.3: text has a contrast of at least 4.5."""
+    ink = QColor(getattr(theme, name)).getRgbF()[:3]
+    grounds = [QColor(each).getRgbF()[:3] for each in (theme.window, theme.base, theme.raised)]
+    assert min(contrast(ink, ground) for ground in grounds) >= 4.5
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
 @pytest.mark.parametrize("checked", [False, True])
 def test_that_a_check_box_stands_out_as_controls_must(app, shown, theme, checked):
     """WCAG 2.2, 1.4.11: what shows a control and its state has a contrast of at least 3."""

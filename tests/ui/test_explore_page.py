@@ -150,5 +150,6 @@ def test_that_a_number_of_facets_found_by_its_loss_is_explained_by_the_loss(wind
     settled(window, SECONDS)
     window.session.update("coarsening", fewer_facets=(12, 0.1))
     button = window.page.coarsening.enough
-    wait(lambda: "12" in button.text())  # refreshed at its next refresh
+    wait(lambda: button.text() == "Use 12 facets")  # refreshed at its next refresh
+    assert window.page.coarsening.finding.text() == "Nothing is gained beyond 12 facets."
     assert button.toolTip() == "With these facets the loss was no larger."

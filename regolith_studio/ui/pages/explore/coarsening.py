@@ -20,7 +20,7 @@ from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation import inert, tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
 from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
@@ -33,6 +33,8 @@ AMOUNTS = {
     "error": "largest_error",
 }
 """Setting of each stopping criterion."""
+NOTES = 5
+"""Lines for what a search and the result say: whole where one descriptor is missed."""
 
 
 class CoarseningPanel(QWidget):
@@ -49,6 +51,8 @@ class CoarseningPanel(QWidget):
         self._sufficient = 0
         self.enough = QPushButton()
         self.enough.setObjectName("sufficient_facets")
+        self.finding = hint_label()
+        self.finding.hide()
         methods = {"method": {key: method.label for key, method in METHODS.items()}}
         names = ("method", "target", "seed", "stop_at")
         self._form = SettingsForm(CoarseningSettings, methods, names, "")
@@ -97,18 +101,21 @@ class CoarseningPanel(QWidget):
 
     def set_outcome(self, sentence: str | None) -> None:
         """Show why a request could not be met, what meeting it costs, or nothing."""
-        self.outcome.setText(translate(sentence) if sentence else "")
+        words = translate(sentence) if sentence else ""
+        self.outcome.setText(words)
+        self.outcome.setToolTip(inert(words))
         self.outcome.setVisible(bool(sentence))
 
     def show_search(self, *, running: bool) -> None:
         """Offer to search the number of facets from which on nothing is gained."""
         self._sufficient = 0
-        self.enough.setText(tr("Searching …") if running else tr("Find the sufficient number"))
+        self.enough.setText(tr("Find the sufficient number"))
         self.enough.setToolTip(tr("Coarsens this particle at several numbers of facets."))
         self.enough.setEnabled(not running)
+        self._show_finding(tr("Searching …") if running else "")
 
     def show_sufficient(self, count: int, *, saturated: bool, now: int, reason: str) -> None:
-        """Show the number of facets from which on nothing is gained, and offer it.
+        """Show the number of facets from which on nothing is gained below the button, which takes it.
 
         - ``saturated``: whether more facets than `count` were tried in vain; else the errors still fall
           there.
@@ -116,15 +123,19 @@ class CoarseningPanel(QWidget):
         - ``reason``: why more are not needed; the tool tip.
         """
         self._sufficient = count
-        if not saturated:
-            words = tr("Errors still fall at {count} facets", count=count)
-        elif now == count:
-            words = tr("Nothing is gained beyond {count} facets", count=count)
-        else:
-            words = tr("Use {count} facets: more do not help", count=count)
-        self.enough.setText(words)
+        found = (
+            tr("Nothing is gained beyond {count} facets.", count=count)
+            if saturated
+            else tr("Errors still fall at {count} facets.", count=count)
+        )
+        self._show_finding(found)
+        self.enough.setText(tr("Use {count} facets", count=count))
         self.enough.setToolTip(reason)
         self.enough.setEnabled(now != count)
+
+    def _show_finding(self, words: str) -> None:
+        self.finding.setText(words)
+        self.finding.setVisible(bool(words) and self.stop_at.value() == "facets")
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -161,8 +172,8 @@ class CoarseningPanel(QWidget):
         layout.addWidget(self._form)
         layout.addWidget(self._sizes)
         layout.addWidget(self.enough)
+        layout.addWidget(FixedHeightText((self.finding, self.outcome), NOTES))
         layout.addWidget(self.more)
-        layout.addWidget(FixedHeightText((self.outcome,)))
 
     def _connect(self) -> None:
         for form in (self._form, self._sizes):
@@ -194,7 +205,9 @@ class CoarseningPanel(QWidget):
     def _show_amount(self) -> None:
         for key, slider in self._amounts.items():
             slider.setVisible(key == self.stop_at.value())
-        self.enough.setVisible(self.stop_at.value() == "facets")
+        by_number = self.stop_at.value() == "facets"
+        self.enough.setVisible(by_number)
+        self.finding.setVisible(by_number and bool(self.finding.text()))
 
     def _show_settings(self) -> None:
         key = self.method.value()

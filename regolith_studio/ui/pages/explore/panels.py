@@ -18,7 +18,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.results import Results
 from regolith_studio.ui.layout import Collapsible
-from regolith_studio.ui.translation import number_text, tr, translate
+from regolith_studio.ui.translation import inert, number_text, tr, translate
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import (
     FixedHeightText,
@@ -58,7 +58,7 @@ class FitPanel(QWidget):
         for widget in (
             self._degree,
             self.more,
-            FixedHeightText((self.warnings, self.findings)),
+            FixedHeightText((self.warnings, self.findings), 3),
         ):
             layout.addWidget(widget)
         self.set_findings(None)
@@ -95,7 +95,9 @@ class FitPanel(QWidget):
                     volume=fit.unrepresentable_volume_share,
                 )
             )
-        self.warnings.setText(with_subscripts(" ".join(map(translate, warnings))))
+        words = with_subscripts(" ".join(map(translate, warnings)))
+        self.warnings.setText(words)
+        self.warnings.setToolTip(inert(words))
         self.warnings.setVisible(bool(warnings))
 
 
