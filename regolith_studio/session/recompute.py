@@ -235,6 +235,11 @@ class LiveResults:
         return job, self._keep_coarsened, self._keep_progress
 
     def _keep_progress(self, step: "CoarseningProgress") -> None:
+        before = self._session.results.coarsening_progress
+        if before is not None and before.step == step.step:
+            self._losses.pop()  # a better polyhedron of the same step
+        if before is not None and before.step <= step.step:  # of the same run, whose later searches add steps
+            step = dataclasses.replace(step, steps=max(before.steps, step.steps))
         self._losses.append((step.step, step.loss))
         best = step if step.polyhedron else self._session.results.best
         history = tuple(self._losses)

@@ -2,11 +2,14 @@
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
+from regolith_studio.coarsening.progress import CoarseningProgress
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.events import Job, Listener
+from regolith_studio.jobs.events import Job, Listener, Partial
 from regolith_studio.jobs.runners import run_job
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
@@ -159,6 +162,45 @@ def test_that_nothing_is_made_of_a_surface_that_could_not_be_drawn(session: Sess
     held.all()
     assert session.results.coarsened is not None
     assert session.results.coarsened.n_facets_asked == 15
+
+
+def test_that_a_curve_has_one_point_a_step_and_a_total_that_never_falls(session: Session, held: Held) -> None:
+    session.choose(n_facets=15)
+    held.waiting["coarsening"][0].job = Job(_in_searches)
+    seen: list[str] = []
+
+    def look() -> None:
+        now = session.results.coarsening_progress
+        seen.append(f"{now.step} of {now.steps}" if now else "")
+        assert [step for step, _ in session.results.loss_history] == list(range((now.step + 1) if now else 0))
+
+    held.let("coarsening", look)
+    assert seen == ["0 of 9", "1 of 9", "1 of 9", "2 of 23", "3 of 23"]
+
+
+def test_that_a_failed_coarsening_leaves_its_reason_and_nothing_else(session: Session, held: Held) -> None:
+    session.choose(n_facets=15)
+    held.waiting["coarsening"][0].job = Job(_in_searches)
+    held.all()
+    results = session.results
+    assert (results.best, results.coarsened, results.coarsening_progress) == (None, None, None)
+    assert results.loss_history == ()
+    assert "no polyhedron" in results.failures["coarsening"]
+
+
+def test_that_another_particle_has_no_curve_of_the_last(session: Session, held: Held) -> None:
+    session.adopt([Particle("pea", icosphere(2).moved(scale=3.0))], add=True)
+    held.all()
+    assert session.results.loss_history
+    session.choose(selected="egg")
+    assert session.results.loss_history == ()
+    assert session.results.best is None
+
+
+def _in_searches():  # type: ignore[no-untyped-def]
+    for step, total in ((0, 9), (1, 9), (1, 9), (2, 23), (3, 20)):
+        yield Partial(CoarseningProgress(step, total, 1.0 - 0.1 * step, None, np.zeros(3)))
+    raise InputError("There is no polyhedron.")
 
 
 def _refuse():  # type: ignore[no-untyped-def]

@@ -34,6 +34,7 @@ from regolith_studio.ui.pages.explore.plots import LossCurvePanel
 from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
+from regolith_studio.ui.widgets.result_view import ResultState
 
 WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
 VALUES = {
@@ -361,6 +362,35 @@ def test_that_the_curve_of_the_loss_ends_at_the_result_and_names_no_better_one(s
     ]
     panel.show_results(Results(loss_history=history, coarsened=SimpleNamespace(loss=0.6)))
     assert [curve.label for curve in panel.plot.curves] == ["current", "best so far", "result"]
+
+
+def test_that_steps_are_whole_numbers_and_a_result_without_steps_has_its_own_curve(shown):
+    panel = shown(LossCurvePanel())
+    panel.show_results(Results(loss_history=((0, 0.9), (1, 0.8), (0, 0.7), (1, 0.6))))
+    assert panel.plot.count_axis.whole
+    panel.show_results(Results(coarsened=SimpleNamespace(loss=0.3), best=SimpleNamespace()))
+    assert {curve.y for curve in panel.plot.curves} == {(0.3,)}
+
+
+def test_that_a_failure_is_on_the_card_and_the_curve_is_gone(shown):
+    curve, card = shown(LossCurvePanel()), shown(AssessmentPanel())
+    curve.show_results(Results(loss_history=((0, 0.9), (1, 0.8))))
+    failed = Results(failures={"coarsening": "There is no polyhedron."})
+    curve.show_results(failed)
+    card.show_results(failed, Choices())
+    assert curve.plot.is_empty()
+    assert card.record.state is ResultState.FAILED
+    assert card.record.note == "There is no polyhedron."
+
+
+def test_that_a_button_names_what_it_does_and_the_finding_stands_below_it(shown):
+    panel = shown(CoarseningPanel())
+    panel.show_search(running=True)
+    assert (panel.enough.text(), panel.finding.text()) == ("Find the sufficient number", "Searching …")
+    panel.show_sufficient(50, saturated=False, now=20, reason="")
+    assert (panel.enough.text(), panel.finding.text()) == ("Use 50 facets", "Errors still fall at 50 facets.")
+    panel.show_search(running=False)
+    assert not panel.finding.isVisible()
 
 
 def test_that_the_losses_of_two_starts_are_not_joined_by_a_line(shown):

@@ -210,7 +210,9 @@ class LossCurvePanel(QWidget):
     def show_results(self, results: Results) -> None:
         """Draw the history of these results."""
         self._results = results
-        history = results.loss_history
+        history, done = results.loss_history, results.coarsened
+        if not history and done is not None:  # of a method that has taken no step
+            history = ((0, done.loss),)
         if not history:
             if results.best is None:  # of another particle, or of none
                 self.plot.set_curves([])
@@ -224,14 +226,14 @@ class LossCurvePanel(QWidget):
             PlotCurve(tr("current"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
             PlotCurve(tr("best so far"), theme.muted, steps, lowest, dash=True),
         ]
-        if (done := results.coarsened) is not None:
+        if done is not None:
             if done.loss > 1.0000001 * rows[-1][2]:
                 del curves[1]  # of a step that did not meet the conditions
             end = (steps[-1:], (done.loss,))
             curves.append(PlotCurve(tr("result"), theme.text, *end, markers=True, line=False))
         self.plot.set_curves(curves)
         progress = results.coarsening_progress
-        running = results.coarsened is None and progress is not None
+        running = done is None and progress is not None
         self.plot.set_hint(
             tr("step {at} of {total}", at=progress.step, total=progress.steps) if running and progress else ""
         )

@@ -1,5 +1,6 @@
 """Line plots: curves with symbols over common axes, with a tool tip at each point."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -151,7 +152,9 @@ class CurvePlot(Plot):
             items = self._drawn[at][1]
             items.draw(curve.x, curve.y, pen, curve.colour if curve.markers else "")
             self._drawn[at] = (curve, items)
-        self.count_axis.whole = all(float(x).is_integer() for curve in self._curves for x in curve.x)
+        self.count_axis.whole = all(
+            float(x).is_integer() or math.isnan(x) for curve in self._curves for x in curve.x
+        )
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
 
