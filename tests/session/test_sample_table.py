@@ -93,6 +93,8 @@ def test_that_health_is_one_word(sample: tuple[ParticleEntry, ...]) -> None:
     assert health_word(ParticleEntry("a", Particle("a", torn), inspect(torn))) == "unsound"
     noted = Particle("a", whole, notes=("A hole was closed.",))
     assert health_word(ParticleEntry("a", noted, inspect(whole))) == "repaired"
+    drawn = Particle("a", whole, notes=("Virtual particle (model recombined, seed 0).",))
+    assert health_word(ParticleEntry("a", drawn, inspect(whole))) == "sound"
     few = Particle("a", whole, notes=("Only 9.8 voxels in diameter: coarse.",))
     assert health_word(ParticleEntry("a", few, inspect(whole))) == "coarse"
     both = Particle("a", whole, notes=(*few.notes, *noted.notes))

@@ -11,9 +11,11 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.coarsening.loss import Evaluation
+from regolith_studio.coarsening.progress import Move
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.lecture_jobs import DegreeStep, trace_degrees
+from regolith_studio.jobs.lecture_jobs import AnnealingStep, DegreeStep, trace_degrees
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
@@ -335,6 +337,17 @@ def test_that_all_plots_of_a_lesson_are_seen_at_once_in_a_small_window(page, pla
     assert plots
     for each in plots:
         assert each.visibleRegion().boundingRect().size() == each.size(), each.objectName()
+
+
+def test_that_losses_that_differ_by_rounding_neither_fall_nor_have_sixteen_digits():
+    """A plane that bounds no facet was moved: the numbers are of such a step."""
+    before, after = (Evaluation({}, loss, loss) for loss in (0.5869966240911841, 0.5869966240911836))
+    move = Move(2, np.zeros((12, 3)), 0.1, before, after, 0.1, 0.5, True)
+    step = AnnealingStep(4, None, after, move)
+    words = texts.sentence_of(step, None)
+    assert "the loss does not change" in words
+    assert "0.5869" not in words
+    assert "<0" not in texts.decision_line(step)
 
 
 def test_that_german_nouns_keep_their_capitals_within_a_sentence(speaking):
