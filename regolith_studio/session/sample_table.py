@@ -57,7 +57,8 @@ def health_sentences(entry: ParticleEntry) -> tuple[str, ...]:
     """All that is known about the mesh."""
     if entry.health is None:
         return (N_("Measuring …"),)
-    return (*entry.health.problems, *entry.particle.notes) or (N_("A closed mesh without faults."),)
+    sentences = dict.fromkeys((*entry.health.problems, *entry.particle.notes))  # a repair may name one too
+    return tuple(sentences) or (N_("A closed mesh without faults."),)
 
 
 def form_of(entry: ParticleEntry) -> str:

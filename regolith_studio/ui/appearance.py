@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from PySide6.QtCore import QObject, QSignalBlocker, Signal
+from PySide6.QtCore import QObject, QSignalBlocker, QTimer, Signal
 from PySide6.QtWidgets import (
     QApplication,
     QDialog,
@@ -17,10 +17,19 @@ from PySide6.QtWidgets import (
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL, apply_font_size, choose_font_size, choose_theme
+from regolith_studio.ui.theme import (
+    LARGEST,
+    SMALLEST,
+    USUAL,
+    apply_font_size,
+    choose_font_size,
+    choose_theme,
+    font_size,
+)
 from regolith_studio.ui.translation import LANGUAGES, SETTING, SYSTEM, tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import hint_label
+from regolith_studio.ui.window_state import restore_borders
 
 FONT_SIZE = "font_size"
 """In the preferences of the window: font size in percent."""
@@ -113,12 +122,14 @@ class Appearance(QObject):
 
     def choose(self, **changes: object) -> None:
         """Keep settings by their names; another theme and font size are seen at once."""
-        before = self._seen()
+        before, size = self._seen(), font_size()
         self._preferences.window = self._preferences.window | changes
         self._preferences.save()
         self._take()
         if self._seen() != before:  # a style takes a second to reach all widgets
             self._apply()
+        if font_size() < size:  # parts that large letters have widened stay so by themselves
+            QTimer.singleShot(0, self._window, lambda: restore_borders(self._window))
 
     def _seen(self) -> tuple[object, object]:
         return self._preferences.window.get("theme", "system"), self._preferences.window.get(FONT_SIZE)

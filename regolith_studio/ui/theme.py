@@ -115,6 +115,11 @@ def choose_font_size(percent: object) -> None:
     _font_scale[0] = min(max(float(percent), SMALLEST), LARGEST) if known else USUAL  # type: ignore[arg-type]
 
 
+def font_size() -> float:
+    """The chosen font size in percent of what the system asks for."""
+    return _font_scale[0]
+
+
 def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Container[QObject] = ()) -> None:
     """Give the whole application a theme, and the chosen font size.
 

@@ -53,14 +53,19 @@ class WindowState:
     def restore_standard(self, window: QMainWindow) -> None:
         """Give window and borders the places of a new window, and forget others."""
         self._preferences.window = self._preferences.window | {LAYOUT: {}}
-        window.showNormal()
-        window.resize(QSize(*STANDARD_SIZE).boundedTo(room_on_screen(window)))
-        for splitter in window.findChildren(QSplitter):
-            splitter.setSizes(splitter.property(STANDARD_SIZES) or [EQUAL] * splitter.count())
+        if not window.isMaximized() and not window.isFullScreen():
+            window.resize(QSize(*STANDARD_SIZE).boundedTo(room_on_screen(window)))
+        restore_borders(window)
 
     def _kept(self) -> dict[str, Any]:
         kept = self._preferences.window.get(LAYOUT)
         return dict(kept) if isinstance(kept, dict) else {}
+
+
+def restore_borders(window: QWidget) -> None:
+    """Give the borders between the parts of all pages the places of a new window."""
+    for splitter in window.findChildren(QSplitter):
+        splitter.setSizes(splitter.property(STANDARD_SIZES) or [EQUAL] * splitter.count())
 
 
 def room_on_screen(window: QMainWindow) -> QSize:

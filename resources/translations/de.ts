@@ -372,6 +372,10 @@
         <translation>; {count} Facetten waren verlangt</translation>
     </message>
     <message>
+        <source>; {share:.2g} % of the volume left out</source>
+        <translation>; {share:.2g} % des Volumens weggelassen</translation>
+    </message>
+    <message>
         <source>&lt;b&gt;Not for compounds:&lt;/b&gt; {why}</source>
         <translation>&lt;b&gt;Nicht für Verbünde:&lt;/b&gt; {why}</translation>
     </message>
@@ -3608,8 +3612,8 @@
         <translation>Nichts ist in Arbeit.</translation>
     </message>
     <message>
-        <source>Nothing to show: no faults, and the whole surface is visible from the star point.</source>
-        <translation>Nichts zu zeigen: keine Mängel, und die ganze Oberfläche ist vom Sternpunkt aus zu sehen.</translation>
+        <source>Nothing to show in the view.</source>
+        <translation>In der Ansicht ist nichts zu zeigen.</translation>
     </message>
     <message>
         <source>Novelty</source>
@@ -7136,6 +7140,10 @@
         <translation>Coarse-Graining, Hubzylinder</translation>
     </message>
     <message>
+        <source>coefficient</source>
+        <translation>Koeffizient</translation>
+    </message>
+    <message>
         <source>coefficients</source>
         <translation>Koeffizienten</translation>
     </message>
@@ -8408,6 +8416,10 @@
         <translation>{count:,} Partikel aus {name}</translation>
     </message>
     <message>
+        <source>{count:,} triangles</source>
+        <translation>{count:,} Dreiecke</translation>
+    </message>
+    <message>
         <source>{count:,} virtual particles are open now.</source>
         <translation>{count:,} virtuelle Partikel sind jetzt geöffnet.</translation>
     </message>
@@ -8436,8 +8448,8 @@
         <translation>{count} Facetten</translation>
     </message>
     <message>
-        <source>{count} facets, Jaccard distance J = {distance:.1%}, loss of this row {loss:.3g}</source>
-        <translation>{count} Facetten, Jaccard-Distanz J = {distance:.1%}, Verlust dieser Zeile {loss:.3g}</translation>
+        <source>{count} facets, Jaccard distance {distance:.1%}, loss of this row {loss:.3g}</source>
+        <translation>{count} Facetten, Jaccard-Distanz {distance:.1%}, Verlust dieser Zeile {loss:.3g}</translation>
     </message>
     <message>
         <source>{count} grains</source>

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFrame,
     QLabel,
+    QSplitter,
     QVBoxLayout,
     QWidget,
 )
@@ -32,6 +33,7 @@ from regolith_studio.ui.theme import (
     current_theme,
 )
 from regolith_studio.ui.widgets.result_view import MAGNIFICATION, ResultView
+from regolith_studio.ui.window_state import restore_borders
 
 
 @pytest.fixture
@@ -103,6 +105,20 @@ def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, 
         assert box.width() >= box.sizeHint().width() - 2, box.objectName()
     window.appearance.choose(**{FONT_SIZE: 100})
     app.setFont(usual)
+
+
+@pytest.mark.usefixtures("usual_looks")
+def test_that_smaller_letters_give_the_borders_of_the_pages_their_places_back(shown, preferences, wait):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1480, 900)
+    columns = window.findChild(QSplitter, "explore_columns")
+    restore_borders(window)
+    standard = columns.sizes()
+    window.appearance.choose(**{FONT_SIZE: 200})
+    columns.setSizes([500, 300, 600])
+    assert columns.sizes() != standard
+    window.appearance.choose(**{FONT_SIZE: 100})
+    wait(lambda: columns.sizes() == standard, 10.0)
 
 
 def test_that_a_theme_reaches_dialogs_of_the_window(app, shown):

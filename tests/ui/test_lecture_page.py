@@ -137,6 +137,18 @@ def test_that_it_plays_by_itself_pauses_and_steps_back(page, wait):
     assert not playback.playing
 
 
+def test_that_space_plays_and_arrows_step_on_the_page(page):
+    page.on_show()
+    playback = page.annealing.playback
+    QTest.keyClick(page, Qt.Key.Key_Right)
+    assert playback.step == 1
+    QTest.keyClick(page, Qt.Key.Key_Left)
+    assert playback.step == 0
+    QTest.keyClick(page, Qt.Key.Key_Space)
+    assert playback.playing
+    assert not page.particle.hasFocus()
+
+
 @pytest.mark.slow
 def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
     before = page.annealing._lesson.steps

@@ -51,7 +51,7 @@ def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     assert table.verticalHeaderItem(0).text() == "Particle"
     wait(lambda: table.item(0, 1) is not None and not table.item(0, 1).icon().isNull())
     for row in range(1, table.rowCount()):
-        assert re.fullmatch(r"J \d+\.\d\s%", table.item(row, 0).text())
+        assert re.fullmatch(r"Jaccard \d+\.\d\s%", table.item(row, 0).text())
         assert not table.item(row, 0).icon().isNull()
     page.gallery.card.button.click()
     page.gallery.card.button.click()

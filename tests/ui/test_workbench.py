@@ -367,6 +367,14 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
     assert columns.sizes() == standard
 
 
+def test_that_opened_particles_are_reached_by_the_arrows_at_once(window, wait):
+    window.page.loss.sliders["min_diameter"].slider.setFocus()
+    window.session.adopt([entry.particle for entry in window.session.particles[:2]])
+    table = window.page.particles.table
+    wait(lambda: window.focusWidget() is table, SECONDS)
+    assert window.session.choices.weights["min_diameter"] == 1.0
+
+
 @pytest.mark.slow
 def test_that_closing_asks_while_a_study_runs(window):
     window.session.start_study("lmax_study")

@@ -14,6 +14,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.star_point import hidden_faces
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
@@ -262,7 +263,8 @@ class ThreeViews(QSplitter):
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
             f"{tr(entry.particle.title)}, {rich(entry.id)}",
-            tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces)),
+            tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces))
+            + _left_out_text(entry.particle),
             rich(entry.id),
         )
         self.link.frame(mesh.vertices)
@@ -474,6 +476,13 @@ class ThreeViews(QSplitter):
 def _lengths(bounds: FloatArray) -> str:
     """Size of the box along the axes."""
     return " × ".join(number_text(edge, ".3g") for edge in bounds[1] - bounds[0]) + " µm"
+
+
+def _left_out_text(particle: Particle) -> str:
+    """A few words where bodies of the file were left out of the particle."""
+    if particle.repair is None or not particle.repair.dropped_bodies:
+        return ""
+    return tr("; {share:.2g} % of the volume left out", share=100 * (1 - particle.repair.kept_volume_share))
 
 
 def _missing_facets_text(results: Results) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
@@ -181,6 +181,7 @@ class ExplorePage(PageWidget):
         self.pictures = PictureExport(context, self.three_views, self)
         self.replay = RunReplay(self)
         self.facet_search = FacetSearch(context, self.coarsening, self)
+        self._listed: list[str] = []
         self._place()
         self._wire(context)
 
@@ -249,9 +250,7 @@ class ExplorePage(PageWidget):
         session, bindings = context.session, context.bindings
         for panel in (self.particles, self.fit, self.coarsening, self.loss):
             bindings.edit(panel)
-        bindings.refresh(
-            "particles", lambda: self.particles.set_entries(session.particles), keeps_particles=True
-        )
+        bindings.refresh("particles", self._list_particles, keeps_particles=True)
         bindings.refresh(
             "particles choices", lambda: self.three_views.show_particle(session.selected), PARTICLE_CHOICES
         )
@@ -272,6 +271,15 @@ class ExplorePage(PageWidget):
 
     def _show_locks(self) -> None:
         self.loss.set_keeps_terms(METHODS[self._session.choices.method].keeps_terms)
+
+    def _list_particles(self) -> None:
+        """Fill the list; it has the focus after others were opened, so that arrows choose among them."""
+        entries, focus = self._session.particles, self.window().focusWidget()
+        ids = [entry.id for entry in entries]
+        opened, self._listed = ids != self._listed, ids
+        self.particles.set_entries(entries)
+        if opened and ids and focus is not None and self.isAncestorOf(focus):
+            self.particles.table.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def _set_section(self, shown: bool) -> None:
         self.three_views.sections.set_shown(shown)

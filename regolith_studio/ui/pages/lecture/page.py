@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from PySide6.QtGui import QGuiApplication, QResizeEvent
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout
 
 from regolith_studio.jobs.events import Failed, Job
@@ -24,6 +25,11 @@ FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
 """Initial font size relative to other pages; below so many of their lines in height, a smaller one."""
 SMALLEST, LARGEST, STEP = 0.8, 2.4, 1.12
 LESSONS = ("annealing", "degrees", "field")
+PLAYING_KEYS: dict[int, str] = {
+    Qt.Key.Key_Space: "play",
+    Qt.Key.Key_Left: "back",
+    Qt.Key.Key_Right: "forward",
+}
 
 
 class LecturePage(PageWidget):
@@ -80,6 +86,17 @@ class LecturePage(PageWidget):
 
     def on_show(self) -> None:
         self._fill()
+        focus = self.window().focusWidget()
+        if focus is None or not focus.isVisible() or self.isAncestorOf(focus):
+            self.setFocus(Qt.FocusReason.OtherFocusReason)  # else Space would open the list of particles
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Space plays and arrows step wherever no control of the page takes them."""
+        name = PLAYING_KEYS.get(event.key())
+        if name is None or event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier:
+            super().keyPressEvent(event)
+        else:
+            self.commands()[name]()
 
     def on_hide(self) -> None:
         for lesson in (self.annealing, self.degrees):

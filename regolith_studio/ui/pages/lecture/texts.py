@@ -166,9 +166,10 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
 def degree_lines(step: DegreeStep) -> tuple[str, ...]:
     """The series with its numbers."""
     count = (step.l_max + 1) ** 2
+    noun = tr("coefficient") if count == 1 else tr("coefficients")
     return (
         GENERAL_SERIES,
-        rf"$l_{{max}}={step.l_max}:$ {BREAK}$\;(l_{{max}}+1)^2={count}$ " + tr("coefficients") + f",{BREAK}"
+        rf"$l_{{max}}={step.l_max}:$ {BREAK}$\;(l_{{max}}+1)^2={count}$ " + noun + f",{BREAK}"
         rf"$\;\frac{{c_{{00}}}}{{\sqrt{{4\pi}}}}={_number(step.mean_radius)}\;\mu m$",
     )
 

@@ -123,10 +123,7 @@ class HealthPanel(QWidget):
             for title, kinds in groups
             if kinds
         ]
-        self.legend.setText(
-            "<br>".join(lines)
-            or tr("Nothing to show: no faults, and the whole surface is visible from the star point.")
-        )
+        self.legend.setText("<br>".join(lines) or tr("Nothing to show in the view."))
 
     def _make_table(self) -> QTableWidget:
         table = QTableWidget(0, 3)

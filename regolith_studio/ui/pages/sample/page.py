@@ -28,7 +28,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.sample.health import HealthPanel, translated_health
+from regolith_studio.ui.pages.sample.health import HealthPanel
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import rich, tr, translate, with_decimal_point
@@ -207,7 +207,7 @@ class SamplePage(PageWidget):
             self._show_pictures()
         mesh = entry.particle.mesh
         title = f"{tr(entry.particle.title)}, {rich(entry.id)}"
-        self.frame.set_texts(title, " ".join(translated_health(entry)))
+        self.frame.set_texts(title, tr("{count:,} triangles", count=len(mesh.faces)))
         if mesh is not self._shown:
             self._shown = mesh
             self._faults = {}

@@ -149,13 +149,13 @@ class GalleryPanel(QWidget):
             item.setToolTip(inert(cell.outcome.problem or ""))
             return item
         item.setIcon(QIcon(thumbnail(found.mesh, self._theme.polyhedron, SIZE)))
-        item.setText(f"J {number_text(found.jaccard_distance, '.1%')}")
+        item.setText(f"Jaccard {number_text(found.jaccard_distance, '.1%')}")
         worst = "\n".join(
             f"{tr(CATALOGUE[key].label)}: {number_text(error, '.2%')}" for key, error in found.errors.items()
         )
         item.setToolTip(
             tr(
-                "{count} facets, Jaccard distance J = {distance:.1%}, loss of this row {loss:.3g}",
+                "{count} facets, Jaccard distance {distance:.1%}, loss of this row {loss:.3g}",
                 count=found.n_facets,
                 distance=found.jaccard_distance,
                 loss=found.loss,
