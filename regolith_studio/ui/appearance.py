@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from PySide6.QtCore import QObject, QSignalBlocker, QTimer, Signal
+from PySide6.QtCore import QObject, QSignalBlocker, Signal
 from PySide6.QtWidgets import (
     QApplication,
     QDialog,
@@ -129,7 +129,7 @@ class Appearance(QObject):
         if self._seen() != before:  # a style takes a second to reach all widgets
             self._apply()
         if font_size() < size:  # parts that large letters have widened stay so by themselves
-            QTimer.singleShot(0, self._window, lambda: restore_borders(self._window))
+            restore_borders(self._window)
 
     def _seen(self) -> tuple[object, object]:
         return self._preferences.window.get("theme", "system"), self._preferences.window.get(FONT_SIZE)

@@ -153,12 +153,9 @@ def test_that_the_dialogs_of_qt_and_the_keys_speak_german(opened, speaking):
     speaking("de")
     window = opened()
     assert QKeySequence("Ctrl+S").toString(QKeySequence.SequenceFormat.NativeText) == "Strg+S"
-    assert window.menus.by_name["open"].toolTip() == "Netze, Ordner, Volumen oder Positionen öffnen (Strg+O)"
+    assert window.menus.by_name["open"].toolTip() == "Dateien jeder Art öffnen (Strg+O)"
     window.shortcuts.change("open", "Ctrl+Shift+Y")
-    assert (
-        window.menus.by_name["open"].toolTip()
-        == "Netze, Ordner, Volumen oder Positionen öffnen (Strg+Umschalt+Y)"
-    )
+    assert window.menus.by_name["open"].toolTip() == "Dateien jeder Art öffnen (Strg+Umschalt+Y)"
     assert window.shortcuts.keys("open") == "Ctrl+Shift+Y"
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
     assert buttons.buttons()[0].text() == "Abbrechen"

@@ -104,12 +104,12 @@ class FixedHeightText(QScrollArea):
     """Labels with the height of a fixed number of lines, so that the controls below do not move.
 
     ``texts``: from top to bottom; hidden ones take no space. Longer ones are scrolled. ``lines``: visible at
-    once.
+    once; ``least``: the same where the window has no room for more.
     """
 
-    def __init__(self, texts: Sequence[QLabel], lines: int = NOTE_LINES) -> None:
+    def __init__(self, texts: Sequence[QLabel], lines: int = NOTE_LINES, least: int = 0) -> None:
         super().__init__()
-        self._lines, self._inside = lines, QWidget()
+        self._lines, self._least, self._inside = lines, least or lines, QWidget()
         inside = self._inside
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 0, 0, 0)
@@ -121,7 +121,7 @@ class FixedHeightText(QScrollArea):
         self.setProperty("role", "texts")
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAccessibleName(tr("Remarks"))
         self.setWidget(inside)
@@ -129,12 +129,14 @@ class FixedHeightText(QScrollArea):
             part.setAutoFillBackground(False)  # shows what is behind, which is lighter in tabs
 
     def sizeHint(self) -> QSize:
-        # the dots of Ä, Ö and Ü rise above what Qt takes for the height of a line
-        height = self._lines * self.fontMetrics().lineSpacing() + 2 + 2 * self.frameWidth()
-        return QSize(super().sizeHint().width(), height)
+        return QSize(super().sizeHint().width(), self._height(self._lines))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(self._inside.minimumSizeHint().width(), self.sizeHint().height())
+        return QSize(self._inside.minimumSizeHint().width(), self._height(self._least))
+
+    def _height(self, lines: int) -> int:
+        # the dots of Ä, Ö and Ü rise above what Qt takes for the height of a line
+        return lines * self.fontMetrics().lineSpacing() + 2 + 2 * self.frameWidth()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

@@ -33,8 +33,8 @@ AMOUNTS = {
     "error": "largest_error",
 }
 """Setting of each stopping criterion."""
-NOTES = 5
-"""Lines for what a search and the result say: whole where one descriptor is missed."""
+NOTES, LEAST_NOTES = 5, 2
+"""Lines for what a search and the result say, whole where one descriptor is missed; and in low windows."""
 
 
 class CoarseningPanel(QWidget):
@@ -172,7 +172,7 @@ class CoarseningPanel(QWidget):
         layout.addWidget(self._form)
         layout.addWidget(self._sizes)
         layout.addWidget(self.enough)
-        layout.addWidget(FixedHeightText((self.finding, self.outcome), NOTES))
+        layout.addWidget(FixedHeightText((self.finding, self.outcome), NOTES, LEAST_NOTES))
         layout.addWidget(self.more)
 
     def _connect(self) -> None:

@@ -21,6 +21,7 @@ from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import inert, number_text, tr, translate
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import (
+    NOTE_LINES,
     FixedHeightText,
     heading,
     hint_label,
@@ -58,7 +59,7 @@ class FitPanel(QWidget):
         for widget in (
             self._degree,
             self.more,
-            FixedHeightText((self.warnings, self.findings), 3),
+            FixedHeightText((self.warnings, self.findings), 3, NOTE_LINES),
         ):
             layout.addWidget(widget)
         self.set_findings(None)
