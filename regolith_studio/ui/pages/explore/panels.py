@@ -5,7 +5,7 @@ from dataclasses import fields
 from typing import Any
 
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QGridLayout, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.reasons import kept_sentence
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
@@ -123,7 +123,11 @@ def weight_spec(key: str) -> NumberSpec:
 def lock_of(key: str) -> QToolButton:
     """The button that keeps a descriptor exactly."""
     name = tr(CATALOGUE[key].label)
-    lock = QToolButton(text="=", checkable=True, autoRaise=True)
+    lock = QToolButton()
+    lock.setText("=")
+    lock.setCheckable(True)
+    lock.setAutoRaise(True)
+    lock.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)  # as high as its slider
     lock.setObjectName(f"keep_{key}")
     lock.setAccessibleName(tr("Keep {name} exactly", name=name))
     lock.setToolTip(
