@@ -37,6 +37,7 @@ TITLES = {
     Kind.COARSENING: N_("Coarsening"),
     Kind.COMPARISON: N_("Comparing with the particle"),
 }
+STOPPED = N_("Stopped; any change of the settings begins again.")
 _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.FIT: {"fit": None},
     Kind.SURFACE: {"surface": None, "surface_l_max": 0},
@@ -158,7 +159,11 @@ class LiveResults:
             self._keep_failure(kind, failure.sentence)
             self._session.failure_reporter(TITLES[kind])(failure)
 
-        reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
+        def stopped() -> None:
+            self._drop_dependents(kind)
+            self._keep_failure(kind, STOPPED)
+
+        reactions = Reactions(finished, partial, failed, stopped)
         self._board.start(kind, TITLES[kind], job, reactions, repeats=True)
 
     def _keep_failure(self, kind: Kind, sentence: str) -> None:

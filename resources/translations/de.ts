@@ -5612,6 +5612,10 @@
         <translation>Abgebrochen. Fertige Teile bleiben erhalten: ein neuer Lauf in denselben Ordner setzt fort.</translation>
     </message>
     <message>
+        <source>Stopped; any change of the settings begins again.</source>
+        <translation>Angehalten; jede Änderung der Einstellungen beginnt von neuem.</translation>
+    </message>
+    <message>
         <source>Stopped; nothing was written.</source>
         <translation>Abgebrochen; es wurde nichts geschrieben.</translation>
     </message>

@@ -12,6 +12,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Job, Listener, Partial
 from regolith_studio.jobs.runners import run_job
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.recompute import STOPPED
 from regolith_studio.session.session import Session
 
 
@@ -186,6 +187,17 @@ def test_that_a_failed_coarsening_leaves_its_reason_and_nothing_else(session: Se
     assert (results.best, results.coarsened, results.coarsening_progress) == (None, None, None)
     assert results.loss_history == ()
     assert "no polyhedron" in results.failures["coarsening"]
+
+
+def test_that_what_a_user_has_stopped_is_not_being_computed(session: Session, held: Held) -> None:
+    session.choose(l_max=5)
+    session.cancel(next(task.id for task in session.tasks if task.queue == "surface"))
+    held.all()
+    assert session.results.failures["coarsening"] == STOPPED
+    session.choose(l_max=6)
+    held.all()
+    assert not session.results.failures
+    assert session.results.coarsened is not None
 
 
 def test_that_another_particle_has_no_curve_of_the_last(session: Session, held: Held) -> None:

@@ -380,7 +380,7 @@ class DatasetPage(PageWidget):
         chosen = None if every else self._chosen
         shown = chosen_particles(self._particles, chosen) if chosen is not None else []
         title = tr_count(N_("1 representative"), N_("{count} representatives"), len(shown))
-        self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
+        self.gallery.show_shapes(title if shown else "", shown)  # the tab has the name
         self._show_sizes()
         self._update_request()
 

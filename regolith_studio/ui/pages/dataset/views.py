@@ -47,7 +47,7 @@ class RepresentativesGallery(QWidget):
         self._painting: Painting | None = None
         self._timer = QTimer(self, interval=0)
         self._timer.timeout.connect(self._draw_next)
-        self.title = heading(tr("Representatives"))
+        self.title = heading("")
         self.list = QListWidget()
         self.list.setObjectName("dataset_gallery")
         self.list.setAccessibleName(tr("Representative particles"))
@@ -67,7 +67,7 @@ class RepresentativesGallery(QWidget):
         layout.addWidget(self.title)
         layout.addWidget(self.list, 1)
         layout.addWidget(self.empty, 1)
-        self.show_shapes(tr("Representatives"), ())
+        self.show_shapes("", ())
 
     @property
     def shown(self) -> tuple[GalleryItem, ...]:
@@ -77,6 +77,7 @@ class RepresentativesGallery(QWidget):
     def show_shapes(self, title: str, shown: Sequence[GalleryItem]) -> None:
         """Show other items."""
         self.title.setText(title)
+        self.title.setVisible(bool(title))
         self._shown = tuple(shown)
         self.list.clear()
         for each in self._shown:
