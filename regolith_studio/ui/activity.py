@@ -238,12 +238,17 @@ class LogPanel(QWidget):
         self.text.appendPlainText("\n".join(lines))
 
 
+LINES = 16
+"""Height of the dock in lines of text when it is first seen, in a window that has thrice as many."""
+
+
 class ActivityDock(QDockWidget):
     """Two tabs: tasks and log."""
 
     def __init__(self, window: QMainWindow) -> None:
         super().__init__(tr("Activity"), window)
         self.setObjectName("activity")
+        self._window, self._sized = window, False
         self.tasks, self.log = TaskListPanel(), LogPanel()
         self.tabs = tabs("activity_tabs", [(self.tasks, tr("Tasks")), (self.log, tr("Log"))])
         self.setWidget(self.tabs)
@@ -264,3 +269,7 @@ class ActivityDock(QDockWidget):
         seen = self.isVisible() and self.tabs.currentWidget() is panel
         self.setVisible(not seen)
         self.tabs.setCurrentWidget(panel)
+        if not self._sized:
+            self._sized = True
+            height = min(LINES * self.fontMetrics().lineSpacing(), self._window.height() // 3)
+            self._window.resizeDocks([self], [height], Qt.Orientation.Vertical)

@@ -303,6 +303,7 @@ def test_that_a_form_holds_only_what_differs_from_the_defaults(shown):
     wanted = {"switch": True, "count": 5, "share": 0.5, "kind": "b"}
     form.setValue(wanted)
     assert form.value() == wanted
+    assert form.editors["share"].text() == "0.5"  # and not 0.500
     form.setValue({})
     assert form.value() == {}
 

@@ -175,6 +175,14 @@ def test_that_explore_does_not_scroll_on_a_small_screen_below_a_title_bar(shown,
     assert [bar.maximum() for bar in bars] == [0, 0]
 
 
+def test_that_several_messages_of_the_log_are_seen_at_once(shown, preferences, wait):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1280, 800)
+    window.activity.show_tab("log")
+    log = window.activity.log.text
+    wait(lambda: log.height() >= 7 * log.fontMetrics().lineSpacing(), 10.0)
+
+
 def test_that_plots_stand_behind_each_other_only_where_two_have_no_room(shown, preferences):
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     plots = window.page.plots

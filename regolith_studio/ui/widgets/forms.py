@@ -188,6 +188,7 @@ def _decimal_field(metadata: Mapping[str, Any]) -> DecimalField:
     field, factor = DecimalField(), metadata.get("factor", 1.0)
     decimals = int(metadata.get("decimals", DECIMALS))
     low = float(metadata.get("minimum", 0.0)) * factor
+    field.pads = False
     field.setDecimals(decimals)
     # a positive minimum that would be rounded to 0 is the smallest number that can be shown
     field.setRange(

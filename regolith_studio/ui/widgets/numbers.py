@@ -17,6 +17,13 @@ class DecimalField(QDoubleSpinBox):
     Qt's own box takes the other sign for that of thousands and drops it, which makes 5 of it.
     """
 
+    pads = True
+    """Whether all decimals are shown, also zeros at the end."""
+
+    def textFromValue(self, value: float) -> str:
+        text, point = super().textFromValue(value), self.locale().decimalPoint()
+        return text if self.pads or point not in text else text.rstrip("0").rstrip(point)
+
     def validate(self, text: str, pos: int) -> tuple[QValidator.State, str, int]:
         return super().validate(self._with_own_sign(text), pos)
 
