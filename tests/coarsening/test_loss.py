@@ -91,6 +91,6 @@ def test_that_any_descriptor_can_be_a_term_of_the_loss_or_is_refused_in_a_senten
     child = subprocess.run([sys.executable, "-c", ELONGATION], capture_output=True, text=True, check=True)
     assert child.stdout.splitlines() == [
         f"The method {method} does not know the term elongation; give it the weight 0, or take"
-        " annealing, quadric."
+        " annealing, pchs, quadric."
         for method in ("exact", "compound")
     ]

@@ -51,6 +51,10 @@ def app(display, tmp_path_factory):  # noqa: ARG001
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
     made = QApplication.instance() or make_application(["tests"])
     made.setQuitOnLastWindowClosed(False)
+    # a question that nobody answers runs no Python, and the alarm of a test's timeout would never be heard
+    heartbeat = QTimer(made, interval=500)
+    heartbeat.timeout.connect(lambda: None)
+    heartbeat.start()
     with patch.object(ui_app, "_compile_in_background"):
         yield made
 

@@ -326,7 +326,8 @@ def test_that_every_command_has_its_place_and_a_tip(window):
         seen.add(keys)
 
 
-def test_that_closing_while_busy_stops_what_runs(window, wait):
+def test_that_closing_while_busy_stops_what_runs(window, wait, monkeypatch):
+    monkeypatch.setattr("regolith_studio.ui.main_window.may_close", lambda *_: True)
     window.session.choose(method="annealing", settings=(("iterations", 100_000),))
     wait(lambda: any(task.queue == "coarsening" for task in window.session.tasks))
     window.close()

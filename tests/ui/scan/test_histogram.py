@@ -38,7 +38,7 @@ def test_that_both_histograms_are_read_where_both_are_drawn(plot):
     plot.set_denoised(histogram(np.array([62, 62, 62, 63], dtype=np.uint8)))
     assert at(plot, 62.0).splitlines()[1:] == [
         "as scanned: 5.45 % of voxels",
-        "without noise: 75 % of voxels",
+        "denoised: 75 % of voxels",
     ]
     assert len(at(plot, 68.0).splitlines()) == 2
 
