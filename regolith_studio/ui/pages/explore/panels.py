@@ -59,7 +59,7 @@ class FitPanel(QWidget):
         for widget in (
             self._degree,
             self.more,
-            FixedHeightText((self.warnings, self.findings), 3, NOTE_LINES),
+            FixedHeightText((self.warnings, self.findings), 5, NOTE_LINES),
         ):
             layout.addWidget(widget)
         self.set_findings(None)
