@@ -248,8 +248,9 @@ def preview_repose(dataset_folder: Path, case: ReposeCase, filling: Path | None 
     yield Started(N_("Drawing particles"))
     prepared, notes = _prepared(dataset_folder, case, filling)
     yield Progress(1, 2)
-    shown = prepared.filling if prepared.filling is not None else loose_column(prepared)
-    return prepared, shown if len(prepared) <= MAX_PREVIEWED else no_particles(), notes
+    if len(prepared) > MAX_PREVIEWED:
+        return prepared, no_particles(), notes
+    return prepared, prepared.filling if prepared.filling is not None else loose_column(prepared), notes
 
 
 def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:

@@ -203,6 +203,8 @@ class ResultView(QFrame):
         start = self._texts[0 if state in (ResultState.NONE, ResultState.FAILED) else 1]
         running = state is ResultState.RUNNING
         self.button.setText((tr("Stopping …") if self._stopping else tr("Stop")) if running else start)
+        # as wide as its widest text so far, so that it is in its place for the next click
+        self.button.setMinimumWidth(max(self.button.minimumWidth(), self.button.sizeHint().width()))
         self.button.setEnabled(not self._stopping if running else not self._problem)
         self.button.setToolTip("" if running else self._problem)
 

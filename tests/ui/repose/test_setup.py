@@ -9,10 +9,12 @@ import pytest
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import check_number
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs import repose_jobs
 from regolith_studio.ui.pages.repose.limits import CaseScale
 from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -45,7 +47,13 @@ def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
     assert not page.angle.button.isEnabled()
 
 
-def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_before(page, dataset, wait):
+def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_before(
+    page, dataset, wait, monkeypatch
+):
+    placed = []
+    monkeypatch.setattr(
+        repose_jobs, "loose_column", lambda case: (placed.append(len(case)), loose_column(case))[1]
+    )
     page.setup.set_dataset(dataset)
     wait(lambda: page.player.pile is not None)
     filled = page.player.frame.view.picture()
@@ -53,6 +61,7 @@ def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_b
     wait(lambda: "100,000 particles" in page.setup.scaling_report.text())
     assert page.angle.button.isEnabled()
     assert len(page.player.pile) == 0
+    assert placed == [300]
     assert np.abs(page.player.frame.view.picture().astype(int) - filled).max() > 50
 
 
