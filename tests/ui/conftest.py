@@ -23,6 +23,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from bootstrap import virtual_display
+from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import app as ui_app
 from regolith_studio.ui import main_window
@@ -55,6 +56,7 @@ def app(display, tmp_path_factory):  # noqa: ARG001
     heartbeat = QTimer(made, interval=500)
     heartbeat.timeout.connect(lambda: None)
     heartbeat.start()
+    shared_sandbox().start()  # its threads stay, whichever test reads first
     with patch.object(ui_app, "_compile_in_background"):
         yield made
 
