@@ -244,18 +244,23 @@ class ResultView(QFrame):
         self.place_sentence(self.width())
 
     def place_sentence(self, width: int) -> None:
-        """Put the sentence beside the figures, or below where a card of this width has no room for it."""
+        """Put the sentence beside the figures, or below where a card of this width has no room for it.
+
+        Where three quarters of the usual width are not left beside its buttons, these come below.
+        """
         figure = self.figures[0].fontMetrics().horizontalAdvance(WIDEST_FIGURE) + 16
         words = self.fontMetrics().horizontalAdvance("0" * SENTENCE_DIGITS)
         high = self.window().height() >= MIN_LINES * self.fontMetrics().height()
         cramped = width < self._outer_width() + self._grid.minimumSize().width() + words // 2
         below = cramped or (high and width < len(self.figures) * figure + words)
-        direction = QBoxLayout.Direction.TopToBottom if below else QBoxLayout.Direction.LeftToRight
-        if direction != self._parts.direction():
-            self._parts.setDirection(direction)
-            self._parts.setSpacing(4 if below else 16)
-            self._row.invalidate()
-            self.updateGeometry()
+        column = bool(self._ends) and width - self._outer_width() < 3 * words // 4
+        for layout, stacked in ((self._parts, below), (self._row, column)):
+            direction = QBoxLayout.Direction.TopToBottom if stacked else QBoxLayout.Direction.LeftToRight
+            if direction != layout.direction():
+                layout.setDirection(direction)
+                layout.setSpacing(4 if stacked else 16)
+                self._row.invalidate()
+                self.updateGeometry()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
