@@ -270,7 +270,7 @@ def _angles(
             study = step.value
             current = angle(study)
             if study.runs:  # one file: the journal is in use, and may not be moved for a moment
-                write_bytes(folder / f"{KIND}.json", json_bytes(budget_document(current)))
+                write_bytes(folder / "uncertainty.json", json_bytes(budget_document(current)))
             yield Partial(current)
         else:
             yield step
