@@ -238,7 +238,7 @@ def test_that_outer_numbers_of_ellipsoids_are_the_ratios_of_their_axes() -> None
 def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample) -> None:
     cut = cement.truncated(10).coefficients
     measured, aim = features_and_target(cut)
-    fitted: Any = MODEL.fit(cement)
+    fitted: Any = MODEL.fit(cement.truncated(10))
     drawn = fitted.draw(500, 2)
     numbers, outer = measured_features(drawn.coefficients, drawn.equivalent_radii())
     gap = np.abs(numbers.mean(axis=0) - measured.mean(axis=0)) / measured.std(axis=0)
@@ -247,7 +247,7 @@ def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample
     assert fitted.faceting >= 0.9
     np.testing.assert_allclose(numbers.std(axis=0) / measured.std(axis=0), 1.0, atol=0.2)
     assert aim.distance(outer) < 0.35
-    plain = MODELS["log_field"].fit(cement).draw(500, 2)
+    plain = MODELS["log_field"].fit(cement.truncated(10)).draw(500, 2)
     assert aim.distance(measured_features(plain.coefficients, plain.equivalent_radii())[1]) > 0.6
     real = _mean_share_of_hull(Realizations(cut, "radius", "measured", 0))
     assert abs(_mean_share_of_hull(drawn) - real) < 0.012
