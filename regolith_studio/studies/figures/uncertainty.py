@@ -68,9 +68,11 @@ def _draw_shares(axis: Axes, found: DescriptorBudget, key: str) -> None:
         spread = np.abs(first[:, 1:] - first[:, :1]).T
         axis.barh(places, np.maximum(first[:, 0], 0), height=0.45, color=FIRST, label="first order")
         axis.errorbar(first[:, 0], places, xerr=spread, fmt="none", ecolor="0.2", elinewidth=0.8)
-        axis.set_xlim(min(-5.0, first[:, 1].min() - 3.0), max(105.0, total[:, 0].max() + 5.0))
+        longest = max(first[:, 0].max(), total[:, 0].max())
+        axis.set_xlim(min(-5.0, first[:, 1].min() - 3.0), max(105.0, longest + 5.0))
         if key == KEYS[0]:
-            axis.legend(frameon=False, fontsize=7)
+            bars = axis.get_legend_handles_labels()[0]
+            axis.figure.legend(handles=bars, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
     axis.set_yticks(places, [step.label for step in found.steps], fontsize=8)
     axis.invert_yaxis()
     axis.set_xlabel("share of the variance (%)", fontsize=8)
