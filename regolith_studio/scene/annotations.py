@@ -45,7 +45,7 @@ class ScaleBar:
 
     - ``plotter``: any pyvista plotter; the bar belongs to its active renderer.
     - ``surroundings``: whose ink it is drawn with.
-    - ``factor``: size of letters and line; pictures of several times the usual size want larger ones.
+    - ``factor``: size of text and line; pictures of several times the usual size want larger ones.
     """
 
     def __init__(

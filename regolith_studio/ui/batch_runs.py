@@ -36,7 +36,7 @@ class DialogRuns(QObject, Generic[Dialog]):
     - ``window``: parent of the dialog.
     """
 
-    LANE, TITLE = "", ""
+    QUEUE, TITLE = "", ""
 
     def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
         super().__init__(window)
@@ -79,21 +79,21 @@ class DialogRuns(QObject, Generic[Dialog]):
             self._dialog.close()
             self._dialog.deleteLater()
         self._dialog = self.make_dialog()
-        self._dialog.restore_fields(self._preferences.window.get(self.LANE, {}))
+        self._dialog.restore_fields(self._preferences.window.get(self.QUEUE, {}))
         self._dialog.started.connect(self._start)
         self._dialog.stopped.connect(lambda: self._session.cancel(self._task))
 
     def _start(self, request: object) -> None:
         dialog = self._dialog
         assert dialog is not None
-        self._preferences.window = self._preferences.window | {self.LANE: dialog.field_values()}
+        self._preferences.window = self._preferences.window | {self.QUEUE: dialog.field_values()}
         try:
             job = self.make_job(request)
         except RegolithError as error:
             dialog.finish(str(error))
             return
         self._task = self._session.run(
-            self.LANE,
+            self.QUEUE,
             self.TITLE,
             job,
             lambda result: self._end(self.sentence_of(result), done=True),
@@ -118,7 +118,7 @@ class DialogRuns(QObject, Generic[Dialog]):
 class BatchRuns(DialogRuns[BatchDialog]):
     """Runs recipes."""
 
-    LANE, TITLE = "batch", N_("Running the recipe")
+    QUEUE, TITLE = "batch", N_("Running the recipe")
 
     def make_dialog(self) -> BatchDialog:
         count, unsaved = len(self._session.particles), len(without_file(self._session))
@@ -153,7 +153,7 @@ class BatchRuns(DialogRuns[BatchDialog]):
 class ReportRuns(DialogRuns["ReportDialog"]):
     """Writes the report on the open particles, as the command ``report`` does."""
 
-    LANE, TITLE = "report", N_("Making the report")
+    QUEUE, TITLE = "report", N_("Making the report")
 
     def make_dialog(self) -> "ReportDialog":
         from regolith_studio.ui.dialogs.report import ReportDialog

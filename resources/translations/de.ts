@@ -2316,6 +2316,10 @@
         <translation>Ordner:</translation>
     </message>
     <message>
+        <source>Font size</source>
+        <translation>Schriftgröße</translation>
+    </message>
+    <message>
         <source>For each number.</source>
         <translation>Für jede Anzahl.</translation>
     </message>
@@ -5306,10 +5310,6 @@
     <message>
         <source>Size noise</source>
         <translation>Größenrauschen</translation>
-    </message>
-    <message>
-        <source>Size of letters</source>
-        <translation>Schriftgröße</translation>
     </message>
     <message>
         <source>Size of voxels</source>

@@ -30,7 +30,7 @@ from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
 PICTURE = 40
-LANE = "library"
+QUEUE = "library"
 EMPTY = N_(
     "Choose a folder: the datasets below it are listed here, with what was exported and simulated from each."
 )
@@ -88,7 +88,7 @@ class LibraryPanel(QWidget):
             self.place.setText(str(root))
             self._entries = ()
             job = Job(list_library, (Path(root), self._results()))
-            self._context.start(tr("Searching for datasets"), job, self._take, queue=LANE, repeats=True)
+            self._context.start(tr("Searching for datasets"), job, self._take, queue=QUEUE, repeats=True)
 
     def suggest(self, root: Path) -> None:
         """List this folder if none has been chosen yet; else update the list."""

@@ -96,7 +96,7 @@ class RunReplay(QObject):
             self.ended.emit()
 
 
-LANE = "facets"
+QUEUE = "facets"
 
 
 class FacetSearch(QObject):
@@ -126,7 +126,7 @@ class FacetSearch(QObject):
             tr("Searching for the sufficient number of facets"),
             job,
             lambda study: self._take(choices, study),
-            queue=LANE,
+            queue=QUEUE,
         )
 
     def _take(self, choices: Choices, study: CoarseningStudy) -> None:
@@ -138,7 +138,7 @@ class FacetSearch(QObject):
     def _show(self) -> None:
         """Show the answer while it belongs to the present choices."""
         choices, results = self._session.choices, self._session.results
-        running = any(task.queue == f"{self._context.key}:{LANE}" for task in self._session.tasks)
+        running = any(task.queue == f"{self._context.key}:{QUEUE}" for task in self._session.tasks)
         if self._found is not None and not _differ_in_facets_only(self._found[0], choices):
             self._found = None
         if self._found is not None:

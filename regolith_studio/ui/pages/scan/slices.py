@@ -351,7 +351,7 @@ class SlicesView(QWidget):
         Parameters
         ----------
         sizes
-            Voxels of each label, told of the one under the mouse.
+            Voxels of each label: the number of the one under the mouse is shown.
         """
         self._surface = labels, surface, sizes
         highest = int(surface.labels.max(initial=0))
