@@ -56,6 +56,11 @@ def test_that_all_descriptors_but_one_are_met_and_the_hull_misses_by_its_bound(
     assert exact.reason is None
 
 
+def test_that_the_curve_of_the_loss_ends_at_the_loss_of_the_result(exact: CoarseningResult) -> None:
+    assert exact.loss_history[-1] == pytest.approx(exact.loss, abs=1e-6)
+    assert min(exact.loss_history) == exact.loss_history[-1]
+
+
 def test_that_scipy_finds_the_same_volume_and_sphericity(exact: CoarseningResult) -> None:
     planes = exact.half_spaces
     hull = ConvexHull(HalfspaceIntersection(planes.equations, np.zeros(3)).intersections)

@@ -9,7 +9,7 @@ import numpy as np
 from regolith_studio.coarsening.core.facet_insertion import MIN_FACET
 from regolith_studio.coarsening.core.plane_coordinates import tangents_of
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
-from regolith_studio.coarsening.loss import LossFunction
+from regolith_studio.coarsening.loss import LossFunction, loss
 from regolith_studio.coarsening.lower_bounds import (
     max_sphericity,
     sphericity_reason,
@@ -281,7 +281,7 @@ class Search:
             yield from self._record(tried, even)
         yield from self._made_whole(tried, few)
         solid, achieved = self._confirmed()
-        value = self._judge.value(solid.half_spaces.normals, solid.half_spaces.offsets)
+        value = self._loss_of(solid.half_spaces)
         if not self._history or abs(value - self._history[-1]) > SAME_LOSS:
             yield self._step(tried, solid.half_spaces)
         descriptors, free = self._target.descriptors, self._free_distance
@@ -487,13 +487,20 @@ class Search:
             yield self._step(tried, found.half_spaces)
 
     def _step(self, number: int, half_spaces: HalfSpaces) -> MethodStep:
-        value = self._judge.value(half_spaces.normals, half_spaces.offsets)
+        value = self._loss_of(half_spaces)
         if number > 0:
             # less of Eq. 9 that misses more of what is to be kept was no step towards this
             while self._history and self._history[-1] < value:
                 self._history.pop()
             self._history.append(value)
         return MethodStep(self._before + number, self._before + self._most, value, half_spaces)
+
+    def _loss_of(self, half_spaces: HalfSpaces) -> float:
+        """Eq. 9 with as many rays as for the result, so that the curve of the steps ends there."""
+        found = self._judge(half_spaces.normals, half_spaces.offsets)
+        if found is None:
+            return np.inf
+        return loss(self._weights, found.errors, self._target.jaccard_distance(half_spaces))
 
     def _rank(self, candidate: Candidate) -> tuple[bool, bool, float]:
         return candidate.rank(self._n_facets)
