@@ -69,7 +69,8 @@ def end_with_parent(source: BinaryIO) -> None:
 
 def _end_after(source: BinaryIO) -> None:
     with contextlib.suppress(OSError):
-        source.read(1)
+        # not source.read: its lock would be held when this process ends by itself, and Python aborts then
+        os.read(source.fileno(), 1)
     if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
         os.killpg(os.getpid(), signal.SIGKILL)
     os._exit(1)

@@ -10,7 +10,6 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +18,6 @@ from regolith_studio.io.child_process import end_with_parent, start_module
 from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
 from regolith_studio.messages import N_, Message
-
-if TYPE_CHECKING:
-    pass
 
 TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 18, "annealing": 12, "exact": 121, "compound": 63}
 TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3}

@@ -1,6 +1,7 @@
 """A program that writes files is followed to its end, and ended with its block."""
 
 import os
+import subprocess
 import sys
 import time
 
@@ -39,3 +40,16 @@ def test_that_a_program_ends_with_the_block_that_was_left_by_an_error(tmp_path) 
         raise KeyError
     assert child.returncode is not None
     assert time.monotonic() - begun < 30
+
+
+@pytest.mark.parametrize(("parent_ends", "code"), [(False, 0), (True, 1)])
+def test_that_a_child_ends_cleanly_by_itself_and_with_its_parent(parent_ends, code) -> None:
+    script = (
+        "import sys, time; from regolith_studio.io.child_process import end_with_parent;"
+        "end_with_parent(sys.stdin.buffer); time.sleep(float(sys.argv[1]))"
+    )
+    command = [sys.executable, "-c", script, "60" if parent_ends else "0.2"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as child:
+        if parent_ends and child.stdin:
+            child.stdin.close()
+        assert child.wait() == code
