@@ -28,6 +28,7 @@ class ParticlePositions:
     - ``diameters``: shape (n,), metres; None where the file does not state it.
     - ``name``: as the user knows the file.
     - ``notes``: sentences that a user should read.
+    - ``states_unit``: whether the file names the unit of its numbers.
 
     Raises ValueError if the shapes are others.
     """
@@ -36,6 +37,7 @@ class ParticlePositions:
     diameters: FloatArray | None
     name: str = ""
     notes: tuple[str, ...] = ()
+    states_unit: bool = False
 
     def __post_init__(self) -> None:
         points = locked_floats(self.points, (None, 3), "points")
@@ -46,7 +48,7 @@ class ParticlePositions:
     def __reduce__(
         self,
     ) -> tuple[Callable[..., "ParticlePositions"], tuple[ArrayLike | str | Any | None, ...]]:
-        return ParticlePositions, (self.points, self.diameters, self.name, self.notes)
+        return ParticlePositions, (self.points, self.diameters, self.name, self.notes, self.states_unit)
 
     def __len__(self) -> int:
         return len(self.points)
@@ -58,8 +60,8 @@ def read_positions(
     """The particles of a position file; of several time steps the last.
 
     - ``path``: a table (.csv, .txt, .dat), XYZ, a LAMMPS dump, or VTK points (.vtk, .vtp, .vtu).
-    - ``unit``: unit of the file's numbers, where the file names none itself (``x [mm]``, the units of a
-      LAMMPS dump).
+    - ``unit``: unit of the file's numbers, where the file names none itself (``x [mm]``, ``x_mm``, the units
+      of a LAMMPS dump).
     - ``columns``: names of all columns of a table or XYZ file, in their order: x, y, z, perhaps diameter or
       radius, and any other name for the rest (``type x y z vx vy vz``). By default those of the file.
     - ``sandbox``: the child process that parses the file; by default the one of this process.
@@ -81,7 +83,8 @@ def read_positions(
         diameters = answer.arrays[1] * (
             unit_factor(header["diameter_unit"] or header["unit"] or unit) * _METRES
         )
-    return ParticlePositions(points, diameters, path.stem, tuple(header["notes"]))
+    states_unit = bool(header["unit"])
+    return ParticlePositions(points, diameters, path.stem, tuple(header["notes"]), states_unit)
 
 
 def asks_for_columns(error: FileError) -> bool:

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
+from regolith_studio.readers.number_rows import utf8_text
+from regolith_studio.readers.position_formats import named_columns, position_suffixes
 from regolith_studio.readers.voxels.slice_series import dicom_names, is_zarr
 from regolith_studio.readers.zip_members import SUFFIX as SUFFIX_OF_ARCHIVES
 from regolith_studio.session.project import SUFFIX
@@ -26,6 +28,7 @@ class FileKind(StrEnum):
     RECIPE = "recipe"
     DATASET = "dataset"
     SHAPES = "fit, model or material card"
+    POSITIONS = "positions of particles"
     UNKNOWN = "unknown"
 
 
@@ -47,10 +50,9 @@ def volume_suffixes() -> tuple[str, ...]:
 
 def openable_suffixes() -> tuple[str, ...]:
     """Endings of all files that can be opened, each once."""
-    tables = (*TABLE_SUFFIXES, *TEXT_SUFFIXES)
-    return tuple(
-        dict.fromkeys((*mesh_suffixes(), *tables, *volume_suffixes(), SUFFIX_OF_ARCHIVES, SUFFIX, ".json"))
-    )
+    tables = (*TABLE_SUFFIXES, *TEXT_SUFFIXES, *sorted(position_suffixes()))
+    others = (*volume_suffixes(), SUFFIX_OF_ARCHIVES, SUFFIX, ".json")
+    return tuple(dict.fromkeys((*mesh_suffixes(), *tables, *others)))
 
 
 def kind_of(path: Path) -> FileKind:
@@ -62,9 +64,13 @@ def kind_of(path: Path) -> FileKind:
         return FileKind.PROJECT
     if name.endswith(".json"):
         return _kind_of_json(path)
+    if name.endswith(TEXT_SUFFIXES) and _names_positions(path):
+        return FileKind.POSITIONS
     if name.endswith((*mesh_suffixes(), SUFFIX_OF_ARCHIVES, *TABLE_SUFFIXES, *TEXT_SUFFIXES)):
         return FileKind.PARTICLES
-    return FileKind.VOLUME if name.endswith(volume_suffixes()) else FileKind.UNKNOWN
+    if name.endswith(volume_suffixes()):
+        return FileKind.VOLUME
+    return FileKind.POSITIONS if path.suffix.lower() in position_suffixes() else FileKind.UNKNOWN
 
 
 def kind_of_all(paths: Sequence[Path]) -> FileKind:
@@ -72,9 +78,7 @@ def kind_of_all(paths: Sequence[Path]) -> FileKind:
     kinds = [kind_of(path) for path in paths]
     if FileKind.UNKNOWN in kinds:
         lost = paths[kinds.index(FileKind.UNKNOWN)].name
-        raise InputError(
-            f"{lost}: not a mesh, table of coefficients, volume, dataset, project, recipe, fit or model."
-        )
+        raise InputError(f"{lost}: not a mesh, table, volume, dataset, project, recipe, fit or model.")
     if len(set(kinds)) > 1:
         raise InputError(
             f"These are of several kinds ({', '.join(sorted(set(kinds)))}): open one kind at once."
@@ -82,6 +86,20 @@ def kind_of_all(paths: Sequence[Path]) -> FileKind:
     if len(paths) > 1 and kinds[0] is not FileKind.PARTICLES:
         raise InputError(f"There are {len(paths)} files of the kind {kinds[0]}: open one after the other.")
     return kinds[0]
+
+
+def _names_positions(path: Path) -> bool:
+    """Whether the first line of a table names columns x, y and z, where one of coefficients has l and m."""
+    if not path.is_file():
+        return False
+    try:
+        with path.open("rb") as file:
+            line = utf8_text(file.readline(_SNIFFED)).decode("utf-8", "replace").strip(" #\r\n")
+        line = re.sub(r"format (\w+)", lambda yade: yade[1].replace("_", " "), line)
+        names = re.split(r"[,;\t]" if re.search(r"[,;\t]", line) else r"\s+", line)
+        return named_columns(tuple(name.strip(" \"'") for name in names)).axes is not None
+    except (OSError, FileError):
+        return False  # whose reader says what is wrong
 
 
 def _kind_of_folder(folder: Path) -> FileKind:

@@ -536,6 +536,10 @@
         <translation>Verfahren Schritt für Schritt</translation>
     </message>
     <message>
+        <source>All columns in their order</source>
+        <translation>Alle Spalten der Reihe nach</translation>
+    </message>
+    <message>
         <source>All default keys</source>
         <translation>Alle Standardtasten</translation>
     </message>
@@ -1172,10 +1176,6 @@
         <translation>Färbt die Fehler im Bild, wie sie vor der Reparatur des Netzes waren</translation>
     </message>
     <message>
-        <source>Columns</source>
-        <translation>Spalten</translation>
-    </message>
-    <message>
         <source>Combines the surface of one measured particle with the form of another.</source>
         <translation>Verbindet die Oberfläche eines gemessenen Partikels mit der Form eines anderen.</translation>
     </message>
@@ -1570,10 +1570,6 @@
     <message>
         <source>Deviation in ln r_eq.</source>
         <translation>Abweichung in ln r_eq.</translation>
-    </message>
-    <message>
-        <source>Diameter</source>
-        <translation>Durchmesser</translation>
     </message>
     <message>
         <source>Diameter in µm = share; @volume behind it counts volume.</source>
@@ -2944,10 +2940,6 @@
         <translation>Längeneinheit von Dateien ohne eigene: um, mm, m, nm, cm oder voxel:GRÖSSE.</translation>
     </message>
     <message>
-        <source>Length unit of the file:</source>
-        <translation>Längeneinheit der Datei:</translation>
-    </message>
-    <message>
         <source>Length unit of these {count} files and folders</source>
         <translation>Längeneinheit dieser {count} Dateien und Ordner</translation>
     </message>
@@ -3418,10 +3410,6 @@
     <message>
         <source>Name of the run</source>
         <translation>Lauf</translation>
-    </message>
-    <message>
-        <source>Names of all columns in their order, such as x y z radius:</source>
-        <translation>Namen aller Spalten in ihrer Reihenfolge, etwa x y z radius:</translation>
     </message>
     <message>
         <source>Names of presets: {names}</source>
@@ -4230,6 +4218,10 @@
     <message>
         <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
         <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Positions in {name}</source>
+        <translation>Positionen in {name}</translation>
     </message>
     <message>
         <source>Positive by construction; size and spectrum are modelled separately, so that it extrapolates.</source>
@@ -6078,6 +6070,10 @@
     <message>
         <source>The particles form a layer {height} mean diameters high; a pile has at least {needed}.</source>
         <translation>Die Partikel bilden eine Schicht von {height} mittleren Durchmessern Höhe; ein Schüttkegel hat mindestens {needed}.</translation>
+    </message>
+    <message>
+        <source>The particles would extend over {width} mm.</source>
+        <translation>Die Partikel würden sich über {width} mm erstrecken.</translation>
     </message>
     <message>
         <source>The picture is coarse until all of the volume has been read.</source>

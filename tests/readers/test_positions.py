@@ -116,6 +116,7 @@ def test_that_columns_whose_meaning_is_not_known_are_asked_for(name, text, read)
         "x,y,z,diameter",
         "X,Y,Z,D",
         '"x [m]","y [m]","z [m]","diameter [m]"',
+        "x_m,y_m,z_m,d_m",
         "Points:0,Points:1,Points:2,Diameter",
         "Particle X-Coordinate [m],Particle Y-Coordinate [m],Particle Z-Coordinate [m],Particle Size [m]",
         "pos_x,pos_y,pos_z,size",

@@ -14,6 +14,7 @@ NAMES = {
     "grain.STL": FileKind.PARTICLES,
     "grain.anm": FileKind.PARTICLES,
     "table.csv": FileKind.PARTICLES,
+    "heap.lammpstrj": FileKind.POSITIONS,
     "scan.tif": FileKind.VOLUME,
     "scan.nii.gz": FileKind.VOLUME,
     "scan.raw": FileKind.VOLUME,
@@ -26,6 +27,22 @@ NAMES = {
 @pytest.mark.parametrize("name", NAMES)
 def test_that_files_are_told_by_their_names(tmp_path, name):
     assert kind_of(tmp_path / name) == NAMES[name]
+
+
+@pytest.mark.parametrize(
+    ("head", "kind"),
+    [
+        ("x,y,z", FileKind.POSITIONS),
+        ("id;x [mm];y [mm];z [mm]", FileKind.POSITIONS),
+        ("#format x_y_z_r", FileKind.POSITIONS),
+        ('"x_mm" "y_mm" "z_mm"', FileKind.POSITIONS),
+        ("l m re im", FileKind.PARTICLES),
+        ("0.1 0.2 0.3", FileKind.PARTICLES),
+    ],
+)
+def test_that_a_table_with_columns_x_y_z_holds_positions(tmp_path, head, kind):
+    (tmp_path / "table.txt").write_text(head + "\n1 2 3\n")
+    assert kind_of(tmp_path / "table.txt") == kind
 
 
 def test_that_json_is_told_by_its_content(tmp_path):

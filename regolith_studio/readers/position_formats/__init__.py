@@ -62,7 +62,7 @@ class NamedColumns:
     size_unit: str | None = None
 
 
-_UNIT = re.compile(r"[\[(]\s*([^\])]{1,12})\s*[\])]\s*$")
+_UNIT = re.compile(r"[\[(]\s*([^\])]{1,12})\s*[\])]\s*$|_(nm|[uµμ]m|mm|cm|m)$", re.IGNORECASE)  # x [mm], x_mm
 _X = (
     "x", "xu", "pos_x", "posx", "position_x", "points:0", "points_0", "coordinates:0", "coordinates_0",
     "center_x", "centre_x", "x_coordinate", "particle x_coordinate", "x_coord", "rx", "cx",
@@ -81,7 +81,7 @@ NAME_THEM = "name its columns, for example “x y z radius” (--columns)"
 def named_columns(names: tuple[str, ...]) -> NamedColumns:
     """Columns of x, y, z and of the size, by the names that programs give them.
 
-    A unit in brackets behind a name (``x [mm]``) counts for the positions or the size.
+    A unit behind a name (``x [mm]``, ``x_mm``) counts for the positions or the size.
 
     Raises FileError with the second half of a sentence if such a unit is unknown, or x, y and z have
     different ones.
@@ -92,7 +92,7 @@ def named_columns(names: tuple[str, ...]) -> NamedColumns:
         unit = _UNIT.search(name)
         key = _UNIT.sub("", name).strip().lower().replace("-", "_")
         if key not in cleaned:
-            cleaned[key], units[key] = place, unit[1].strip() if unit else None
+            cleaned[key], units[key] = place, (unit[1] or unit[2]).strip() if unit else None
     axes, unit_of_axes = None, None
     for pattern in _X:
         triple = [pattern, *(_turned(pattern, step) for step in (1, 2))]

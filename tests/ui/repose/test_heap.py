@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF
-from PySide6.QtWidgets import QFileDialog, QInputDialog
+from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from benchmarks.heaps import surface_of_revolution
 from regolith_studio.dataset.parameters import LiftingCylinderTest
@@ -18,6 +18,7 @@ from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import orbited
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.pages.repose.player import RunPlayer
+from regolith_studio.ui.pages.repose.positions import PositionsDialog
 from regolith_studio.ui.pages.repose.section_plot import MANY_DISCS, drawn_discs, particle_text
 from tests.ui.repose.conftest import import_positions, pile_of
 
@@ -91,18 +92,46 @@ def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tm
     assert sum(row[2] == "yes" for row in rows) == section.used.sum()
 
 
-def test_that_a_table_of_another_program_asks_for_its_unit(page, tmp_path, monkeypatch, wait):
+@pytest.mark.parametrize(
+    ("head", "columns", "fields"),
+    [
+        ("x,y,z,diameter", 4, {"positions_unit": "mm"}),
+        ("x_mm,y_mm,z_mm,r_mm", 4, {}),
+        ("x_mm,y_mm,z_mm", 3, {"positions_diameter": 2.0}),
+        ("a,b,c,d", 4, {"positions_columns": "x y z d", "positions_unit": "mm"}),
+    ],
+    ids=str,
+)
+def test_that_one_dialog_asks_only_what_a_table_does_not_state(
+    page, tmp_path, monkeypatch, wait, head, columns, fields
+):
     pile = pile_of(35.0)
-    path = tmp_path / "rocky.csv"
-    np.savetxt(
-        path, 1e3 * np.column_stack([pile.points, pile.diameters]), delimiter=",", header="x,y,z,diameter"
-    )
-    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
-    monkeypatch.setattr(QInputDialog, "getItem", lambda *_: ("mm", True))
-    page.open_positions()
+    path = tmp_path / "pile.csv"
+    sizes = pile.diameters * (0.5 if "r_mm" in head else 1.0)
+    table = 1e3 * np.column_stack([pile.points, sizes])[:, :columns]
+    np.savetxt(path, table, delimiter=",", header=head, comments="")
+    asked = []
+
+    def answer(dialog):
+        names = ("positions_unit", "positions_columns", "positions_diameter")
+        asked.append({name for name in names if dialog.findChild(QWidget, name).isVisibleTo(dialog)})
+        if "positions_columns" in fields:
+            dialog.columns.setText(fields["positions_columns"])
+            dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
+            assert not dialog.diameter.isEnabled(), "a column is the diameter"
+        elif "positions_unit" in fields:
+            assert "would extend over" in dialog.size_note.text(), "millimetres are suggested by the width"
+        dialog.diameter.setValue(fields.get("positions_diameter", 1.0))
+        return QDialog.DialogCode.Accepted
+
+    monkeypatch.setattr(PositionsDialog, "exec", answer)
+    page.open_path(path)
     wait(lambda: page._measured is not None)
     assert page._measured.angle == pytest.approx(35.0, abs=2.0)
     assert page._pile.diameters == pytest.approx(2e-3)
+    extra = {"positions_diameter"} if "positions_columns" in fields else set()
+    assert asked == ([set(fields) | extra] if fields else [])
+    assert path.name in page.angle.sentence.text()
 
 
 def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):

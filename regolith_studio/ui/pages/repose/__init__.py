@@ -1,6 +1,7 @@
 """Page "Angle of repose": set up the lifting cylinder, watch it, measure the pile, compare runs."""
 
 from regolith_studio.messages import N_
+from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.ui.page import BREAK, ActionSpec, Page
 
 PAGE = Page(
@@ -10,6 +11,7 @@ PAGE = Page(
     order=70,
     tip=N_("Fill a cylinder with the particles of a dataset, lift it, measure the pile"),
     make="regolith_studio.ui.pages.repose.page:ReposePage",
+    opens=(FileKind.POSITIONS,),
     actions=(
         ActionSpec("open_dataset", N_("Open a &dataset …"), tip=N_("Choose the dataset to simulate")),
         ActionSpec(

@@ -43,7 +43,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.repose.calibration import CalibrationController, CalibrationPanel
-from regolith_studio.ui.pages.repose.export import export_measurement, read_other
+from regolith_studio.ui.pages.repose.export import export_measurement
 from regolith_studio.ui.pages.repose.heap import (
     HeapSections,
     heap_record,
@@ -54,6 +54,7 @@ from regolith_studio.ui.pages.repose.heap import (
 )
 from regolith_studio.ui.pages.repose.limits import CaseScale, LimitsStrip
 from regolith_studio.ui.pages.repose.player import RunPlayer
+from regolith_studio.ui.pages.repose.positions import choose_positions, read_pile
 from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
 from regolith_studio.ui.pages.repose.setup import SetupPanel, engine_table
 from regolith_studio.ui.pages.repose.study import StudyController, StudyPanel
@@ -243,10 +244,22 @@ class ReposePage(PageWidget):
         )
 
     def open_positions(self) -> None:
-        """Measure the pile of another program from a file of positions."""
-        if (read := read_other(self, self._context.toast)) is None:
+        """Ask for a file of positions of another program and measure its pile."""
+        if path := choose_positions(self):
+            self.open_path(path)
+
+    def open_path(self, path: Path) -> None:
+        """Measure the pile of another program."""
+        try:
+            read = read_pile(self, path)
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
             return
-        path, pile = read
+        if read is None:
+            return
+        pile, notes = read
+        for note in notes:
+            self._context.toast.note(note)
         self._shown_run = None
         self.runs.select(None)
         self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=path.name), "")
