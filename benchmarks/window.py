@@ -42,7 +42,7 @@ def opened(views: str, size: tuple[int, int] = (1920, 1080)) -> Iterator[Any]:
 
         make_application(["benchmark"])
         from regolith_studio.session.preferences import Preferences
-        from regolith_studio.ui.app import open_window
+        from regolith_studio.ui.startup import open_window
 
         window = open_window(views=views, preferences=Preferences())
         window.resize(*size)
@@ -208,7 +208,7 @@ def coarsened_and_drawn(window: Any, count: int) -> Growth:
 
 def samples_opened(window: Any, count: int) -> Growth:
     """Drawn particles are opened, some are looked at, and the shipped sample is opened again."""
-    from regolith_studio.ui.app import IDLE
+    from regolith_studio.ui.main_window import IDLE
 
     page, session = window.go("model"), window.session
     session.choose(method="quadric", level=2)

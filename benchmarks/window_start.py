@@ -63,15 +63,15 @@ def main() -> None:
 
 def _watch(now: Any, seen: dict[str, float]) -> None:
     """Follow the window once it is there."""
-    from regolith_studio.ui.translation import language
+    from regolith_studio.ui import translation
 
-    install = language.install_translators
+    install = translation.install_translators
 
     def installed(*given: Any) -> Any:
         translators = install(*given)
-        from regolith_studio.ui import app
+        from regolith_studio.ui import startup
 
-        opened, app.show_recovery_and_tour = app.open_window, lambda _window: None
+        opened, startup.show_recovery_and_tour = startup.open_window, lambda _window: None
 
         def watched(*paths: Any, **options: Any) -> Any:
             window = opened(*paths, **options)
@@ -79,10 +79,10 @@ def _watch(now: Any, seen: dict[str, float]) -> None:
             _frames(window, now, seen)
             return window
 
-        app.open_window = watched
+        startup.open_window = watched
         return translators
 
-    language.install_translators = installed
+    translation.install_translators = installed
 
 
 def _frames(window: Any, now: Any, seen: dict[str, float]) -> None:

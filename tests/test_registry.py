@@ -88,7 +88,7 @@ from regolith_studio.dem.engines import engine_rows
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.page_stack import Sidebar
+from regolith_studio.ui.page import Sidebar
 assert [row["version"] for row in engine_rows() if row["key"] == "lunar_engine"] == ["1.0"]
 rows = np.random.default_rng(0).normal(size=(20, 9)) * 0.01
 rows[:, 0] += 3.5

@@ -19,10 +19,9 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.icons import icon
+from regolith_studio.ui.keyboard import plain, shown_keys, with_keys
 from regolith_studio.ui.page import BREAK, PAGE_MENU, VIEW, ActionSpec, Page
-from regolith_studio.ui.shortcuts import plain, shown_keys, with_keys
-from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.theme import Theme, icon
 from regolith_studio.ui.translation import tr
 
 SHOWN = 14

@@ -25,12 +25,11 @@ from regolith_studio.messages import N_
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import tabs
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.result_card import TaskClock, progress_text
+from regolith_studio.ui.theme import Theme, current_theme, icon
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label
-from regolith_studio.ui.widgets.result_view import TaskClock, progress_text
 from regolith_studio.ui.widgets.toast import Toast
 
 SHOW_DELAY = 250

@@ -1,21 +1,41 @@
-"""Keyboard: a visible focus, keys of the window in number boxes, and undo while typing."""
+"""Keyboard: shortcuts and their dialog, a visible focus, keys of the window in number boxes."""
 
+from collections.abc import Mapping
 from typing import cast
 
 import shiboken6
 from PySide6.QtCore import QEvent, QObject, Qt
-from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence, QWindow
+from PySide6.QtGui import QAction, QGuiApplication, QKeyEvent, QKeySequence, QWindow
 from PySide6.QtWidgets import (
     QAbstractButton,
+    QAbstractItemView,
     QAbstractSpinBox,
     QApplication,
+    QDialog,
+    QDialogButtonBox,
     QDoubleSpinBox,
+    QFormLayout,
+    QHBoxLayout,
+    QHeaderView,
+    QKeySequenceEdit,
+    QLabel,
+    QLineEdit,
+    QPushButton,
     QScrollArea,
     QSpinBox,
     QTabBar,
     QTableView,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
     QWidget,
 )
+
+from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.labels import heading, hint_label
 
 FOCUSED = "focused"
 """Property that the style sheet asks for; parts around a widget that have it are framed with it."""
@@ -159,3 +179,239 @@ def is_being_typed(box: QAbstractSpinBox) -> bool:
     if box.value() == box.minimum():
         default = box.specialValueText() or default
     return box.text() != default
+
+
+SHORTCUTS = "shortcuts"
+"""In the preferences of the window: keys by the name of the command, where they are not the usual ones."""
+_NEEDED = {
+    "Tab",
+    "Shift+Tab",
+    "Return",
+    "Enter",
+    "Esc",
+    "Space",
+    "Backspace",
+    "Del",
+    "Up",
+    "Down",
+    "Left",
+    "Right",
+}
+
+
+class Shortcuts:
+    """The shortcuts of all commands; commands that are shown together must not share keys.
+
+    ``actions``: by name; those of a page begin with its key and a dot, and work while the page is seen.
+    ``pages``: keys of the pages.
+    """
+
+    def __init__(
+        self, actions: Mapping[str, QAction], pages: tuple[str, ...], preferences: Preferences
+    ) -> None:
+        self.actions = {name: each for name, each in actions.items() if each.menu() is None and each.text()}
+        self._pages, self._preferences = pages, preferences
+        self.defaults = {name: each.shortcut().toString() for name, each in self.actions.items()}
+        kept = preferences.window.get(SHORTCUTS)
+        for name, keys in kept.items() if isinstance(kept, dict) else ():
+            if name in self.actions and isinstance(keys, str) and not self.conflict(name, keys):
+                self._set(name, keys)
+
+    def keys(self, name: str) -> str:
+        """Of one command, as ``Ctrl+Shift+P``; empty for none."""
+        return self.actions[name].shortcut().toString()
+
+    def conflict(self, name: str, keys: str) -> str:
+        """One sentence on why a command cannot have these keys, or nothing."""
+        sequence = QKeySequence(keys)
+        text = sequence.toString()
+        if not keys:
+            return ""
+        if not text or sequence.count() != 1:
+            return tr("{keys} cannot be assigned to a command.", keys=keys)
+        if text in _NEEDED or (len(text) == 1 and text.isprintable()):
+            return tr("{keys} is reserved for typing and navigation; add Ctrl or Alt.", keys=text)
+        for other in self.actions:
+            if other != name and self.keys(other) == text and self._meet(name, other):
+                name_of_other = plain(self.actions[other])
+                return tr("{keys} is already assigned to “{command}”.", keys=text, command=name_of_other)
+        return ""
+
+    def change(self, name: str, keys: str) -> None:
+        """Give a command other keys, and keep them."""
+        if sentence := self.conflict(name, keys):
+            raise InputError(sentence)
+        self._set(name, keys)
+        self._keep()
+
+    def reset(self) -> None:
+        """Give every command its usual keys."""
+        for name, keys in self.defaults.items():
+            self._set(name, keys)
+        self._keep()
+
+    def _set(self, name: str, keys: str) -> None:
+        action = self.actions[name]
+        tip = action.toolTip().removesuffix(with_keys("", action.shortcut()))
+        action.setShortcut(QKeySequence(keys))
+        action.setToolTip(with_keys(tip, action.shortcut()))
+
+    def _keep(self) -> None:
+        changed = {
+            name: self.keys(name) for name, default in self.defaults.items() if self.keys(name) != default
+        }
+        self._preferences.window = self._preferences.window | {SHORTCUTS: changed}
+        self._preferences.save()
+
+    def _meet(self, one: str, other: str) -> bool:
+        """Whether both can be run on the same page."""
+        owners = [name.split(".")[0] if name.split(".")[0] in self._pages else "" for name in (one, other)]
+        return "" in owners or owners[0] == owners[1]
+
+
+def shown_keys(keys: QKeySequence) -> str:
+    """Keys as the keyboard of the user names them."""
+    return keys.toString(QKeySequence.SequenceFormat.NativeText)
+
+
+def with_keys(words: str, keys: QKeySequence) -> str:
+    """A tool tip that ends with the keys, if there are any."""
+    return words if keys.isEmpty() else f"{words} ({shown_keys(keys)})"
+
+
+def plain(action: QAction) -> str:
+    """The words of a command, without marks and dots."""
+    return action.text().replace("&", "").rstrip(" …")
+
+
+MOUSE = (
+    (N_("Left drag"), N_("Rotate the particle")),
+    (N_("Right or middle drag, Shift + drag"), N_("Pan the view")),
+    (N_("Ctrl + drag"), N_("Roll the view")),
+    (N_("Wheel"), N_("Zoom")),
+)
+
+
+class ShortcutsDialog(QDialog):
+    """A table of commands; the keys of the chosen one are edited below it."""
+
+    def __init__(self, shortcuts: Shortcuts, titles: dict[str, str], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr("Keyboard and mouse"))
+        self.setObjectName("shortcuts_dialog")
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.resize(620, 640)
+        self._shortcuts, self._titles = shortcuts, titles
+        self.search = QLineEdit()
+        self.search.setObjectName("shortcuts_search")
+        self.search.setAccessibleName(tr("Search commands"))
+        self.search.setPlaceholderText(tr("Search commands and keys"))
+        self.search.setClearButtonEnabled(True)
+        self.table = QTableWidget(0, 2)
+        self.table.setObjectName("shortcuts_table")
+        self.table.setAccessibleName(tr("Commands and their keys"))
+        self.table.setHorizontalHeaderLabels([tr("Command"), tr("Keys")])
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setTabKeyNavigation(False)
+        self.table.setShowGrid(False)
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.editor = QKeySequenceEdit()
+        self.editor.setObjectName("shortcuts_keys")
+        self.editor.setAccessibleName(tr("New keys of the chosen command"))
+        self.editor.setMaximumSequenceLength(1)
+        self.editor.setClearButtonEnabled(True)
+        self.change, self.default, self.all_defaults = (
+            QPushButton(words) for words in (tr("Change"), tr("Default keys"), tr("All default keys"))
+        )
+        for button, name in (
+            (self.change, "change"),
+            (self.default, "usual"),
+            (self.all_defaults, "all_defaults"),
+        ):
+            button.setObjectName(f"shortcuts_{name}")
+            button.setAutoDefault(False)
+        self.sentence = hint_label(role="warning")
+        self._arrange()
+        self.search.textChanged.connect(lambda _: self._fill())
+        self.table.itemSelectionChanged.connect(self._show_chosen)
+        self.change.clicked.connect(lambda: self._try(self.editor.keySequence().toString()))
+        self.default.clicked.connect(lambda: self._try(self._shortcuts.defaults[self.chosen()]))
+        self.all_defaults.clicked.connect(self._reset)
+        self._fill()
+
+    def chosen(self) -> str:
+        """Name of the command that is chosen; empty for none."""
+        row = self.table.currentRow()
+        item = self.table.item(row, 0) if row >= 0 else None
+        return str(item.data(Qt.ItemDataRole.UserRole)) if item else ""
+
+    def choose(self, name: str) -> None:
+        """Choose a command by its name, if it is listed."""
+        for row in range(self.table.rowCount()):
+            item = self.table.item(row, 0)
+            if item is not None and item.data(Qt.ItemDataRole.UserRole) == name:
+                self.table.selectRow(row)
+
+    def _fill(self) -> None:
+        name, words = self.chosen(), self.search.text().lower().split()
+        rows = []
+        for key, action in self._shortcuts.actions.items():
+            title = f"{self._titles[key]}: {plain(action)}" if self._titles.get(key) else plain(action)
+            keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+            if all(word in f"{title} {keys}".lower() for word in words):
+                rows.append(
+                    (key, title, keys, keys and self._shortcuts.defaults[key] != self._shortcuts.keys(key))
+                )
+        self.table.setRowCount(len(rows))
+        for row, (key, title, keys, own) in enumerate(rows):
+            item = QTableWidgetItem(title)
+            item.setData(Qt.ItemDataRole.UserRole, key)
+            self.table.setItem(row, 0, item)
+            self.table.setItem(row, 1, QTableWidgetItem(f"{keys} *" if own else keys))
+        self.choose(name)
+        self._show_chosen()
+
+    def _show_chosen(self) -> None:
+        name = self.chosen()
+        for widget in (self.editor, self.change, self.default):
+            widget.setEnabled(bool(name))
+        self.editor.setKeySequence(QKeySequence(self._shortcuts.keys(name) if name else ""))
+        self.sentence.setText("")
+
+    def _try(self, keys: str) -> None:
+        try:
+            self._shortcuts.change(self.chosen(), keys)
+        except InputError as error:
+            self.sentence.setText(str(error))
+            return
+        self._fill()
+
+    def _reset(self) -> None:
+        self._shortcuts.reset()
+        self._fill()
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout()
+        row.addWidget(QLabel(tr("Keys:")))
+        row.addWidget(self.editor, 1)
+        for button in (self.change, self.default, self.all_defaults):
+            row.addWidget(button)
+        mouse = QFormLayout()
+        mouse.setHorizontalSpacing(24)
+        for gesture, meaning in MOUSE:
+            mouse.addRow(tr(gesture), QLabel(tr(meaning)))
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
+        buttons.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)  # Enter searches
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.search)
+        layout.addWidget(self.table, 1)
+        layout.addLayout(row)
+        layout.addWidget(self.sentence)
+        layout.addWidget(heading(tr("Mouse in the views")))
+        layout.addLayout(mouse)
+        layout.addWidget(buttons)

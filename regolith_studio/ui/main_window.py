@@ -14,20 +14,17 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions, CommandPalette
 from regolith_studio.ui.activity import ActivityDock, TasksPanel
-from regolith_studio.ui.appearance import Appearance
+from regolith_studio.ui.appearance import STANDARD_SIZE, Appearance, WindowState
 from regolith_studio.ui.batch_runs import BatchRuns, ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog, guide_dialog
-from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog, guide_dialog, start_tour
+from regolith_studio.ui.keyboard import Shortcuts, ShortcutsDialog
+from regolith_studio.ui.page import PageContext, PageStack, PageWidget
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.project_files import ProjectFiles, may_close, needs_confirmation
-from regolith_studio.ui.shortcuts import Shortcuts, ShortcutsDialog
 from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
-from regolith_studio.ui.tour import start_tour
 from regolith_studio.ui.widgets.toast import Toast, report_file_problems
-from regolith_studio.ui.window_state import STANDARD_SIZE, WindowState
 
 
 class MainWindow(QMainWindow):

@@ -18,9 +18,8 @@ from regolith_studio.session.project import SUFFIX, Project, SessionRecipe, read
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
-from regolith_studio.ui.commands import without
-from regolith_studio.ui.page_history import PageHistory
-from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.commands import PageHistory, without
+from regolith_studio.ui.page import PageStack
 from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.toast import Toast
 

@@ -1,29 +1,56 @@
-"""Start the window: check the display, make the application object, show a splash while the rest loads."""
+"""Start the window: check the display, show a splash while the rest loads, make window and session."""
 
 import gc
 import os
 import signal
 import socket
 import sys
-from collections.abc import Mapping, Sequence
+import traceback
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QCoreApplication, QLocale, QSocketNotifier, Qt, QTimer
-from PySide6.QtGui import QColor, QFont, QIcon, QPainter, QPixmap, QSurfaceFormat
+from psygnal import EmitLoopError
+from PySide6.QtCore import QCoreApplication, QLocale, QObject, QSocketNotifier, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QColor,
+    QFont,
+    QGuiApplication,
+    QIcon,
+    QOffscreenSurface,
+    QOpenGLContext,
+    QPainter,
+    QPixmap,
+    QSurfaceFormat,
+)
 from PySide6.QtWidgets import QApplication, QLabel
 
-from regolith_studio.errors import MissingRequirement
+from regolith_studio.errors import MissingRequirement, RegolithError
 from regolith_studio.resources import resource
-from regolith_studio.ui.icons import pixmap
-from regolith_studio.ui.views.factory import surface_format
+from regolith_studio.ui.theme import pixmap
 from regolith_studio.version import __version__
+
+if TYPE_CHECKING:  # the splash is shown before they are loaded
+    from regolith_studio.jobs.runners.thread import ThreadRunner
+    from regolith_studio.session.preferences import Preferences
+    from regolith_studio.ui.main_window import MainWindow
 
 SWITCH_INTERVAL = 0.001
 """Seconds after which a computing thread hands the interpreter to the thread of the window.
 
 Qt releases the interpreter at each call, so that the window waits for it often; Python's default is 5 ms.
 """
+VARIABLE = "REGOLITH_STUDIO_VIEWS"
+"""Environment variable that asks for ``live`` or ``image``."""
+_WITHOUT_OPENGL = ("offscreen", "minimal", "vnc", "linuxfb")
 _WITHOUT_DISPLAY = ("offscreen", "minimal", "vnc", "linuxfb", "eglfs")
+FILLED_CHECK = 100
+"""Milliseconds between two looks at whether the views of the first start are filled."""
+FIRST_PAGE = "explore"
+"""The page where the tour begins."""
+IDLE, BUSY = 3_000, 60_000
+"""Milliseconds without work, and at most, after which hidden pages forget closed particles."""
 _WIDTH, _HEIGHT, _MARK = 420, 170, 92
 _GROUND, _LETTERS, _QUIET = "#1d2126", "#e4e7eb", "#9aa4b0"
 
@@ -45,8 +72,6 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
 
     preferences = Preferences.load()
     install_translators(app, str(preferences.window.get(SETTING, SYSTEM)))
-    from regolith_studio.ui.app import make_excepthook, open_window, show_recovery_and_tour
-
     window = open_window(paths, unit, preferences=preferences)
     sys.excepthook = make_excepthook(window.toast.problem)
     window.show()
@@ -135,3 +160,152 @@ def make_splash() -> QLabel:
     splash.resize(picture.size())
     splash.move(splash.screen().availableGeometry().center() - splash.rect().center())
     return splash
+
+
+def best_kind() -> str:
+    """``live`` where a window can hold an OpenGL 3.2 context, else ``image``, unless the variable says."""
+    asked = os.environ.get(VARIABLE, "")
+    if asked in ("live", "image"):
+        return asked
+    if QGuiApplication.platformName() in _WITHOUT_OPENGL:
+        return "image"
+    return "live" if _has_opengl() else "image"
+
+
+def surface_format() -> QSurfaceFormat:
+    """Desktop OpenGL 3.2 core, as VTK needs it; edges are smoothed by VTK, not by the window."""
+    wanted = QSurfaceFormat()
+    wanted.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
+    wanted.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
+    wanted.setVersion(3, 2)
+    wanted.setSwapBehavior(QSurfaceFormat.SwapBehavior.DoubleBuffer)
+    wanted.setDepthBufferSize(8)
+    wanted.setAlphaBufferSize(8)
+    wanted.setStencilBufferSize(0)
+    wanted.setSamples(0)
+    return wanted
+
+
+def _has_opengl() -> bool:
+    surface = QOffscreenSurface()
+    surface.setFormat(surface_format())
+    surface.create()
+    context = QOpenGLContext()
+    context.setFormat(surface_format())
+    works = context.create() and surface.isValid() and context.makeCurrent(surface)
+    if works:
+        works = context.format().version() >= (3, 2)
+        context.doneCurrent()
+    return bool(works)
+
+
+def show_recovery_and_tour(window: "MainWindow") -> None:
+    """Offer what a crash has left; start the tour at the first start, when there is something to see."""
+    from regolith_studio.ui.dialogs.help import TOUR_SEEN
+
+    window.projects.offer_recovery()
+    if window.preferences.window.get(TOUR_SEEN):
+        return
+    timer = QTimer(window, interval=FILLED_CHECK)
+
+    def start_when_filled() -> None:
+        if window.session.results.polyhedron is not None or not window.session.tasks:
+            timer.stop()
+            if window.pages.current == FIRST_PAGE:  # else its user is at work already
+                window.show_tour()
+
+    timer.timeout.connect(start_when_filled)
+    timer.start()
+
+
+def open_window(
+    paths: Sequence[str | Path] = (),
+    unit: str | None = None,
+    views: str | None = None,
+    preferences: "Preferences | None" = None,
+) -> "MainWindow":
+    """A window with its own session; the particles arrive a moment later."""
+    from regolith_studio.jobs.runners.thread import ThreadRunner
+    from regolith_studio.session.preferences import Preferences
+    from regolith_studio.session.session import Session
+    from regolith_studio.ui.main_window import MainWindow
+
+    poster = MainThreadInvoker()
+    runner = ThreadRunner(poster.post)
+    _compile_in_background(runner)
+    session = Session(runner)
+    files = [Path(path) for path in paths]
+    if not files:
+        session.open_sample()  # is read while the window is built
+    window = MainWindow(session, preferences or Preferences.load(), views or best_kind())
+    poster.setParent(window)
+    if files:
+        QTimer.singleShot(0, window, lambda: window.commands.open_paths(files, unit))
+    _release_memory(window)
+    return window
+
+
+def _compile_in_background(runner: "ThreadRunner") -> None:
+    """Compile what is not compiled yet in the order in which it is needed; who needs it says so meanwhile."""
+    from regolith_studio.jobs.compile_kernels import TASKS, compile_first
+    from regolith_studio.jobs.events import Job
+
+    runner.submit(Job(compile_first, tuple(TASKS)), lambda _event: None, "compile")
+
+
+def _release_memory(window: "MainWindow") -> None:
+    """Let hidden pages drop closed particles when nothing runs, so that their meshes are freed."""
+    timer, latest = QTimer(window, singleShot=True, interval=IDLE), QTimer(window, interval=BUSY)
+    for each in (timer, latest):
+        each.timeout.connect(window.pages.refresh_hidden)
+    latest.start()
+    window.bindings.listen("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
+
+
+Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]
+
+
+def make_excepthook(report: Callable[[str, str], None]) -> Hook:
+    """An excepthook that reports one sentence and keeps the program alive."""
+
+    def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        details = "".join(traceback.format_exception(kind, error, trace))
+        print(details, file=sys.stderr)  # noqa: T201
+        cause = error.__cause__ if isinstance(error, EmitLoopError) else None
+        reason = cause or error  # psygnal wraps what a listener of the session raises
+        if isinstance(reason, RegolithError):
+            report(str(reason), details)
+        else:
+            from regolith_studio.ui.translation import tr
+
+            name = type(reason).__name__
+            report(tr("Internal error ({name}); the program continues.", name=name), details)
+
+    return hook
+
+
+Call = Callable[[], None]
+
+
+class MainThreadInvoker(QObject):
+    """``post`` may be called from any thread; the function runs soon, in order, where this object lives."""
+
+    _posted = Signal(object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._open = True
+        self._posted.connect(self._run, Qt.ConnectionType.QueuedConnection)
+
+    def post(self, call: Call) -> None:
+        """Run `call` in the thread of the window; dropped when the window has closed."""
+        if self._open:
+            self._posted.emit(call)
+
+    def close(self) -> None:
+        """Run nothing any more."""
+        self._open = False
+
+    def _run(self, call: Call) -> None:
+        if self._open:
+            call()

@@ -25,8 +25,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 from bootstrap import virtual_display
 from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui import app as ui_app
-from regolith_studio.ui import main_window
+from regolith_studio.ui import main_window, startup
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.startup import make_application
 from regolith_studio.ui.translation import install_translators, remove_translators
@@ -57,7 +56,7 @@ def app(display, tmp_path_factory):  # noqa: ARG001
     heartbeat.timeout.connect(lambda: None)
     heartbeat.start()
     shared_sandbox().start()  # its threads stay, whichever test reads first
-    with patch.object(ui_app, "_compile_in_background"):
+    with patch.object(startup, "_compile_in_background"):
         yield made
 
 

@@ -18,8 +18,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.combo_box import text_room
+from regolith_studio.ui.views.view import ViewFrame
+from regolith_studio.ui.widgets.fields import text_room
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.export import plain_text
 

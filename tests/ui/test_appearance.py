@@ -19,11 +19,11 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import open_window
-from regolith_studio.ui.appearance import FONT_SIZE, Appearance
-from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.appearance import FONT_SIZE, Appearance, restore_borders
 from regolith_studio.ui.layout import padded
 from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.result_card import MAGNIFICATION, ResultView
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.theme import (
     DARK,
     LIGHT,
@@ -31,9 +31,8 @@ from regolith_studio.ui.theme import (
     choose_font_size,
     choose_theme,
     current_theme,
+    pixmap,
 )
-from regolith_studio.ui.widgets.result_view import MAGNIFICATION, ResultView
-from regolith_studio.ui.window_state import restore_borders
 
 
 @pytest.fixture

@@ -13,10 +13,10 @@ from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.recipe import Outputs, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.batch_runs import BatchRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.dialogs.batch import BatchDialog
+from regolith_studio.ui.startup import MainThreadInvoker
 from regolith_studio.ui.widgets.toast import Toast
 
 WISH = recipe_of(

@@ -13,7 +13,7 @@ from regolith_studio.scene import clipping, facets
 from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import OUTLINE, SURFACE
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.labels import grouped_number
 

@@ -23,12 +23,12 @@ from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.pages.dataset.export_panel import groups
+from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.theme import DARK, LIGHT
-from regolith_studio.ui.widgets.result_view import ResultState
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
 from regolith_studio.ui.widgets.toast import Toast
 from tests.dataset.example import elbow_entry, entry

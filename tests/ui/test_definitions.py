@@ -6,8 +6,8 @@ from PySide6.QtCore import Qt
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.ui.pages.explore.page import ParticleListPanel
 from regolith_studio.ui.pages.explore.panels import weight_spec
-from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.plots import DescriptorTablePanel
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol

@@ -4,7 +4,7 @@ from itertools import cycle
 
 import pytest
 
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.startup import open_window
 
 
 def test_that_the_polyhedron_follows_the_degree(shown, preferences, wait):

@@ -8,9 +8,9 @@ from PySide6.QtWidgets import QApplication, QDialog, QFileDialog, QInputDialog, 
 
 from regolith_studio.jobs.events import Started, Stopped
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.help import Tour
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.tour import Tour
+from regolith_studio.ui.startup import open_window
 
 LEFT_OUT = ("quit", "recent")
 """The end of the window, and a menu."""

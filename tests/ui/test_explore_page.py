@@ -11,8 +11,8 @@ from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.scene import overlays
 from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import SURFACE
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
+from regolith_studio.ui.startup import open_window
 
 SECONDS = 120.0
 VEIL = OTHER + SURFACE

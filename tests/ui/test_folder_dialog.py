@@ -5,7 +5,7 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QMessageBox, QPushButton
 
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 
 
 @pytest.fixture

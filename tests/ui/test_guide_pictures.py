@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from PySide6.QtTest import QTest
 
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.startup import open_window
 
 IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
 SECONDS = 170.0

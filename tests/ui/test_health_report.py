@@ -16,7 +16,7 @@ from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.particle_jobs import find_faults, measure_particle
 from regolith_studio.scene.overlays import FAULT_COLOURS, show_faults
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.pages.sample.health import KINDS, HealthPanel
+from regolith_studio.ui.pages.sample.page import KINDS, HealthPanel
 
 BALL = icosphere(2)
 SMALL = BALL.moved(shift=(5, 0, 0), scale=0.5)

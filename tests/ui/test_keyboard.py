@@ -26,15 +26,14 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.files import UnitDialog
 from regolith_studio.ui.dialogs.help import CitationLinks
-from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.views.view import WHEEL_ZOOM
-from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
+from regolith_studio.ui.startup import open_window
+from regolith_studio.ui.views.view import WHEEL_ZOOM, ViewFrame
 from regolith_studio.ui.widgets.labels import CitingLabel
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 KINDS = (
     *(QAbstractButton, QComboBox, QAbstractSpinBox, QAbstractSlider),

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QDialog, QLabel, QVBoxLayout, QWidget
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.widgets.labels import (
     CITATION,
     WrappedLabel,
@@ -15,7 +16,6 @@ from regolith_studio.ui.widgets.labels import (
     with_citations,
     with_subscripts,
 )
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 
 WORDS = "In each step one plane is moved at random, and the move is accepted or rejected. " * 3
 

@@ -5,7 +5,7 @@ import weakref
 
 import pytest
 
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.startup import open_window
 
 DRAWN = 20
 

@@ -26,9 +26,9 @@ from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
-from regolith_studio.ui.pages.model.views import DistributionsPanel, distance_text
+from regolith_studio.ui.pages.model.controls import DistributionsPanel, distance_text
 from regolith_studio.ui.translation import translate
-from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
+from regolith_studio.ui.widgets.plots.bars import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
 from tests.plugin import lunar_kinds
 from tests.ui.reading import english_left

@@ -29,8 +29,8 @@ from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.ui.app import open_window, show_recovery_and_tour
-from regolith_studio.ui.dialogs.opening import UnitDialog
+from regolith_studio.ui.dialogs.files import UnitDialog
+from regolith_studio.ui.startup import open_window, show_recovery_and_tour
 
 MOST = 10
 """Interactions that a task may take."""

@@ -4,7 +4,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec
 
 WHOLE = NumberSpec("n", "Number", 4, 60, limit=200)
 BROKEN = NumberSpec("w", "Weight", 0.0, 2.0, 0.05, limit=100.0)

@@ -10,8 +10,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.messages import Message, Number
 from regolith_studio.ui.pages.explore.plots import DescriptorTablePanel
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.widgets.fields import DecimalField, NumbersLine
 from regolith_studio.ui.widgets.labels import grouped_number, short_number
-from regolith_studio.ui.widgets.numbers import DecimalField, NumbersLine
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,8 @@ from regolith_studio.session.provenance import SampleSource, VirtualSource
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.dialogs.files import UnitDialog
 from regolith_studio.ui.dialogs.help import PAGES, as_markdown
-from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.pages import PAGES as WINDOW_PAGES
 from regolith_studio.ui.widgets.toast import Toast
 

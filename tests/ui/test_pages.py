@@ -15,8 +15,7 @@ from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.page import ActionSpec, Page, PageContext, PageWidget
-from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.page import ActionSpec, Page, PageContext, PageStack, PageWidget
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.theme import DARK
 from regolith_studio.ui.widgets.toast import Toast
@@ -166,7 +165,7 @@ def test_that_the_neighbours_of_a_page_go_round(stack):
 
 def test_that_hidden_pages_take_a_theme_when_they_are_seen(stack, monkeypatch):
     one, two = stack.go("one"), stack.go("two")
-    monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda: DARK)
+    monkeypatch.setattr("regolith_studio.ui.page.current_theme", lambda: DARK)
     before = one.theme
     stack.set_theme(DARK)
     assert two.theme is DARK

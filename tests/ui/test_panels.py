@@ -28,13 +28,13 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.studies.lmax import LmaxStudy
 from regolith_studio.ui.activity import IDLE, TasksPanel
 from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
+from regolith_studio.ui.pages.explore.page import ParticleListPanel
 from regolith_studio.ui.pages.explore.panels import AssessmentPanel, FitPanel, LossPanel
-from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.plots import LossCurvePanel
 from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
+from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
-from regolith_studio.ui.widgets.result_view import ResultState
 
 WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
 VALUES = {

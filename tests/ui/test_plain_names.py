@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QAbstractItemView, QLabel, QWidget
 from regolith_studio.resources import resource
 from regolith_studio.session.project import Project
 from regolith_studio.session.recipe import Recipe
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages import PAGES
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.translation import Markup, inert, rich, tr, translate
 from regolith_studio.ui.widgets.labels import hint_label, with_subscripts
 

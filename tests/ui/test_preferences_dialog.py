@@ -3,8 +3,8 @@
 import pytest
 from PySide6.QtWidgets import QApplication, QDialog
 
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.appearance import PreferencesDialog
+from regolith_studio.ui.startup import open_window
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.ui.pages.explore.panels import LossPanel
-from regolith_studio.ui.widgets.combo_box import text_room
+from regolith_studio.ui.widgets.fields import text_room
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry, PresetForm
 
 MINE = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)

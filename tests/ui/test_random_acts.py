@@ -5,7 +5,7 @@ import os
 import pytest
 from PySide6.QtGui import QGuiApplication
 
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.startup import open_window
 
 from .random_acts import RandomActs, dialogs_answered, errors_collected
 

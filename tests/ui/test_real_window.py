@@ -24,10 +24,10 @@ from PySide6.QtWidgets import (
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.resources import resource
-from regolith_studio.ui.app import open_window
-from regolith_studio.ui.dialogs.opening import UnitDialog
+from regolith_studio.ui.dialogs.files import UnitDialog
+from regolith_studio.ui.dialogs.help import Tour, start_tour
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.theme import current_theme
-from regolith_studio.ui.tour import Tour, start_tour
 
 pytestmark = pytest.mark.window
 

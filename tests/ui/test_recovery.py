@@ -16,15 +16,15 @@ from regolith_studio.session import project
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.project_files import CopyLock, autosave_path, stale_autosaves
+from regolith_studio.ui.startup import open_window
 
 WORK = """
 from regolith_studio.ui import project_files
 from regolith_studio.ui.startup import make_application
 app = make_application(["killed"])
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.startup import open_window
 project_files.AUTOSAVE_SECONDS = 0
 window = open_window(views="image")
 window.show()

@@ -15,10 +15,10 @@ from regolith_studio.session.report import write
 from regolith_studio.session.report.sections import ReportSection
 from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.batch_runs import ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.dialogs.report import ReportDialog
+from regolith_studio.ui.startup import MainThreadInvoker
 from regolith_studio.ui.widgets.plots.export import plain_text
 from regolith_studio.ui.widgets.toast import Toast
 

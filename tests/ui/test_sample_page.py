@@ -13,9 +13,9 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.widgets.labels import short_number
 
 SECONDS = 120.0

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.shortcuts import Shortcuts, ShortcutsDialog
+from regolith_studio.ui.keyboard import Shortcuts, ShortcutsDialog
 
 pytestmark = pytest.mark.usefixtures("preferences")
 

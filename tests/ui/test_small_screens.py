@@ -9,7 +9,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.page_stack import ScrollablePage
+from regolith_studio.ui.page import ScrollablePage
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.pages.explore.plots import FONT_SIZE as LETTERS_OF_TWO
 from regolith_studio.ui.theme import choose_font_size

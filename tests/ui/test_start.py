@@ -13,7 +13,7 @@ import sys
 from regolith_studio.ui import startup
 heavy = {"numba", "scipy", "pyvista", "matplotlib"} & set(sys.modules)
 assert not heavy, heavy
-import regolith_studio.ui.app as app
+import regolith_studio.ui.main_window
 heavy = {"scipy.stats", "skimage", "sklearn", "h5py", "dask"} & set(sys.modules)
 assert not heavy, heavy
 import gc
@@ -21,7 +21,7 @@ seen = []
 def show_recovery_and_tour(window):
     seen.append(window.isVisible())
     window.close()
-app.show_recovery_and_tour = show_recovery_and_tour
+startup.show_recovery_and_tour = show_recovery_and_tour
 code = startup.run()
 assert gc.isenabled() and gc.get_freeze_count() > 100_000, gc.get_freeze_count()
 assert seen == [True], seen
@@ -42,7 +42,7 @@ def test_that_the_program_starts_with_a_light_import_and_ends_with_its_window(tm
 STUCK = """
 import time
 from regolith_studio.jobs.events import Job, Started
-from regolith_studio.ui import app, startup
+from regolith_studio.ui import main_window, startup
 def stuck():
     yield Started("a step without an end", 1)
     time.sleep(100.0)
@@ -52,8 +52,7 @@ def show_recovery_and_tour(window):
     time.sleep(0.3)
     window.close()
     print("closed", flush=True)
-app.show_recovery_and_tour = show_recovery_and_tour
-from regolith_studio.ui import main_window
+startup.show_recovery_and_tour = show_recovery_and_tour
 main_window.may_close = lambda *_: True
 startup.run()
 """

@@ -16,13 +16,13 @@ from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import best_row, sufficient_facets
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
+from regolith_studio.ui.result_card import ResultRecord, ResultState
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.theme import DARK
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState
 
 SECONDS = 170.0
-ASKED = "regolith_studio.ui.dialogs.folder.FolderDialog.ask"
+ASKED = "regolith_studio.ui.dialogs.files.FolderDialog.ask"
 
 
 def paper_names():

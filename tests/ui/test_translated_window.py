@@ -18,17 +18,16 @@ from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.readers.volumes.header import DatasetEntry, VolumeHeader
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.actions import CommandPalette
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.appearance import PreferencesDialog
 from regolith_studio.ui.dialogs.batch import BatchDialog
-from regolith_studio.ui.dialogs.help import about_dialog
-from regolith_studio.ui.dialogs.opening import UnitDialog
+from regolith_studio.ui.dialogs.files import UnitDialog
+from regolith_studio.ui.dialogs.help import about_dialog, start_tour, steps
 from regolith_studio.ui.dialogs.report import ReportDialog
+from regolith_studio.ui.keyboard import ShortcutsDialog
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.project_files import may_close
-from regolith_studio.ui.shortcuts import ShortcutsDialog
-from regolith_studio.ui.tour import start_tour, steps
+from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.translation import tr, translate
 from tests.ui.reading import cut_off, english_left, points_left
 

@@ -20,7 +20,8 @@ from regolith_studio.scene import instancing, surfaces
 from regolith_studio.scene.cameras import CameraPose, framing_pose
 from regolith_studio.scene.palette import DARK
 from regolith_studio.session.results import ParticleEntry, Results
-from regolith_studio.ui.views.factory import best_kind, make_view
+from regolith_studio.ui.startup import best_kind
+from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.views.view import CameraLink
 

@@ -16,10 +16,9 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.resources import resource
 from regolith_studio.session.results import SessionEvents
-from regolith_studio.ui.app import make_excepthook, open_window
-from regolith_studio.ui.dialogs.opening import UnitDialog
-from regolith_studio.ui.page_stack import PageStack
-from regolith_studio.ui.startup import check_display
+from regolith_studio.ui.dialogs.files import UnitDialog
+from regolith_studio.ui.page import PageStack
+from regolith_studio.ui.startup import check_display, make_excepthook, open_window
 from regolith_studio.ui.theme import DARK, LIGHT, current_theme
 
 SECONDS = 120.0
@@ -286,7 +285,7 @@ def test_that_the_window_follows_dark_and_light(window, wait):
 @pytest.mark.slow
 def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, shown, preferences, wait):
     busy = []
-    monkeypatch.setattr("regolith_studio.ui.app.IDLE", 20)
+    monkeypatch.setattr("regolith_studio.ui.main_window.IDLE", 20)
     monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: busy.append(len(window.session.tasks)))
     window = open_window(views="image", preferences=preferences)
     shown(window)
@@ -305,7 +304,7 @@ def work_without_end():
 
 @pytest.mark.slow
 def test_that_closed_particles_are_released_although_work_never_ends(monkeypatch, shown, preferences, wait):
-    monkeypatch.setattr("regolith_studio.ui.app.BUSY", 500)
+    monkeypatch.setattr("regolith_studio.ui.main_window.BUSY", 500)
     released = []
     monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: released.append(True))
     window = open_window(views="image", preferences=preferences)

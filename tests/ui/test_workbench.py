@@ -23,13 +23,13 @@ from regolith_studio.session.project import Project
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.actions import CommandPalette
 from regolith_studio.ui.activity import TaskListPanel
-from regolith_studio.ui.app import FILLED_CHECK, open_window, show_recovery_and_tour
-from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
+from regolith_studio.ui.dialogs.help import TOUR_SEEN, Tour, start_tour, steps
+from regolith_studio.ui.keyboard import plain
+from regolith_studio.ui.pages.explore.page import ParticleListPanel
 from regolith_studio.ui.pages.lecture.page import LESSONS
 from regolith_studio.ui.project_files import autosave_path, needs_confirmation, stale_autosaves
-from regolith_studio.ui.shortcuts import plain
-from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
-from regolith_studio.ui.widgets.result_view import ResultState, time_left
+from regolith_studio.ui.result_card import ResultState, time_left
+from regolith_studio.ui.startup import FILLED_CHECK, open_window, show_recovery_and_tour
 
 SECONDS = 120.0
 

@@ -34,7 +34,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.translation import Markup, tr, tr_count
 from regolith_studio.ui.widgets.labels import hint_label
 

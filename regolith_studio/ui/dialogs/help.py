@@ -1,14 +1,27 @@
-"""The guide, and what the program is and how it is cited."""
+"""The guide, the tour, and what the program is and how it is cited."""
 
+import json
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, metadata, version
 
-from PySide6.QtCore import QObject, Qt, QUrl, Slot
-from PySide6.QtGui import QDesktopServices, QImage, QTextDocument
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QUrl, Slot
+from PySide6.QtGui import (
+    QColor,
+    QDesktopServices,
+    QImage,
+    QKeyEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QRegion,
+    QTextDocument,
+)
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
+    QFrame,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -18,10 +31,11 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.guide import chapter
-from regolith_studio.resources import guide_folder
-from regolith_studio.ui.icons import pixmap
+from regolith_studio.resources import guide_folder, resource
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.theme import current_theme, pixmap
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import CITATION, heading, hint_label
+from regolith_studio.ui.widgets.labels import CITATION, heading, hint_label, with_subscripts
 from regolith_studio.version import __version__
 
 PAGES = {
@@ -201,3 +215,179 @@ def _version(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return tr("(not installed)")
+
+
+TOUR_SEEN = "tour_seen"
+"""In the preferences of the window: that the tour need not start by itself any more."""
+_WIDTH = 364
+_GAP = 14
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the tour: its page, the object name of its widget, its text."""
+
+    page: str
+    target: str
+    title: str
+    text: str
+
+
+def steps() -> tuple[Step, ...]:
+    """All stops, in order."""
+    entries = json.loads(resource("tour", "en.json").read_text(encoding="utf-8"))
+    shown = ({**entry, "title": tr(entry["title"]), "text": tr(entry["text"])} for entry in entries)
+    return tuple(Step(**entry) for entry in shown)
+
+
+def start_tour(window: QWidget, go: Callable[[str], object], preferences: Preferences) -> "Tour":
+    """Begin at the first stop, instead of a tour that is under way; `go` shows a page by its key."""
+    for old in window.findChildren(Tour):
+        old.finish()
+    return Tour(window, go, preferences)
+
+
+class Tour(QWidget):
+    """A frame around the widget, and a bubble with text; the window stays usable."""
+
+    def __init__(self, window: QWidget, go: Callable[[str], object], preferences: Preferences) -> None:
+        super().__init__(window)
+        self.setObjectName("tour")
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._window, self._go, self._preferences = window, go, preferences
+        self._steps, self._at = steps(), 0
+        self._elsewhere = False
+        self._spot = QRect()
+        self._watched: QWidget | None = None
+        self._bubble = QFrame(window)
+        self._bubble.setObjectName("tour_bubble")
+        self._bubble.setProperty("role", "toast")
+        self._bubble.setProperty("kind", "note")
+        self._title, self._text, self._count = heading(""), QLabel(), hint_label()
+        self._text.setWordWrap(True)
+        self.back, self.next = QPushButton(tr("Back")), QPushButton(tr("Next"))
+        self.end = QPushButton(tr("End tour"))
+        for button, name in ((self.back, "tour_back"), (self.next, "tour_next"), (self.end, "tour_end")):
+            button.setObjectName(name)
+            button.setAutoDefault(True)  # the return key presses it, as in a dialog
+        self._arrange()
+        self.back.clicked.connect(lambda: self.go(self._at - 1))
+        self.next.clicked.connect(lambda: self.go(self._at + 1))
+        self.end.clicked.connect(self.finish)
+        window.installEventFilter(self)
+        self.go(0)
+        self.next.setFocus()
+
+    @property
+    def at(self) -> int:
+        """Number of the present stop, from 0."""
+        return self._at
+
+    def go(self, number: int) -> None:
+        """Show another stop; past the last one the tour ends."""
+        if number >= len(self._steps):
+            self.finish()
+            return
+        self._at = max(0, number)
+        step = self._steps[self._at]
+        self._go(step.page)
+        self._title.setText(with_subscripts(step.title))
+        self._text.setText(with_subscripts(step.text))
+        self._count.setText(tr("{at} of {total}", at=self._at + 1, total=len(self._steps)))
+        self.back.setEnabled(self._at > 0)
+        self.next.setText(tr("Done") if self._at == len(self._steps) - 1 else tr("Next"))
+        self._bubble.setAccessibleName(f"{step.title}. {step.text}")
+        self._place()
+
+    def follow(self, page: str) -> None:
+        """Hide the frame while another page than that of this stop is shown."""
+        self._elsewhere = page != self._steps[self._at].page
+        self._place()
+
+    def finish(self) -> None:
+        """End the tour, and remember that it was seen."""
+        self._window.removeEventFilter(self)
+        self._watch(None)
+        self._preferences.window = self._preferences.window | {TOUR_SEEN: True}
+        self._preferences.save()
+        for widget in (self._bubble, self):
+            widget.hide()
+            widget.deleteLater()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize and watched in (self._window, self._watched):
+            self._place()
+        if isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
+            self.finish()
+        return super().eventFilter(watched, event)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QPen(QColor(current_theme().accent), 3))
+        painter.drawRoundedRect(self._spot.adjusted(2, 2, -2, -2), 7, 7)
+        painter.end()
+
+    def target(self) -> QWidget | None:
+        """What this stop is about, or the nearest part around it that can be seen."""
+        widget = self._window.findChild(QWidget, self._steps[self._at].target)
+        while widget is not None and not widget.isVisible():
+            widget = widget.parentWidget()
+        return None if widget is self._window else widget
+
+    def _place(self) -> None:
+        self.hide()  # beside views that draw by themselves a frame that only moves leaves its trace behind
+        self.setGeometry(self._window.rect())
+        target = self.target()
+        self._watch(target)
+        if target is None:
+            self._spot = QRect(self.rect().center(), self.rect().center())
+        else:
+            self._spot = QRect(target.mapTo(self._window, QPoint(0, 0)), target.size()).adjusted(-5, -5, 5, 5)
+        self._spot &= self.rect()
+        ring = QRegion(self._spot) - QRegion(self._spot.adjusted(5, 5, -5, -5))
+        self.setMask(ring)  # nothing but the frame is drawn over views that draw by themselves
+        width = max(_WIDTH, self._bubble.minimumSizeHint().width())
+        self._bubble.setFixedSize(width, max(90, self._bubble.heightForWidth(width)))
+        self._bubble.move(_beside(self._spot, self._bubble.rect(), self.rect()))
+        for widget in (self._bubble,) if self._elsewhere else (self, self._bubble):
+            widget.show()
+            widget.raise_()
+
+    def _watch(self, target: QWidget | None) -> None:
+        """Follow the size of what this stop is about: a tool bar above it may still change its height."""
+        if target is not self._watched:
+            if self._watched is not None:
+                self._watched.removeEventFilter(self)
+            if target is not None:
+                target.installEventFilter(self)
+            self._watched = target
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout()
+        self._count.setWordWrap(False)
+        row.addWidget(self._count, 1)
+        for button in (self.end, self.back, self.next):
+            row.addWidget(button)
+        layout = QVBoxLayout(self._bubble)
+        layout.setContentsMargins(16, 14, 16, 12)
+        layout.setSpacing(8)
+        for widget in (self._title, self._text):
+            layout.addWidget(widget)
+        layout.addLayout(row)
+
+
+def _beside(spot: QRect, bubble: QRect, room: QRect) -> QPoint:
+    """Where the bubble stands: right of the spot, left of it, below, above, or in its middle."""
+    width, height = bubble.width(), bubble.height()
+    top = max(_GAP, min(spot.center().y() - height // 2, room.height() - height - _GAP))
+    left = max(_GAP, min(spot.center().x() - width // 2, room.width() - width - _GAP))
+    if spot.right() + _GAP + width < room.width():
+        return QPoint(spot.right() + _GAP, top)
+    if spot.left() - _GAP - width > 0:
+        return QPoint(spot.left() - _GAP - width, top)
+    if spot.bottom() + _GAP + height < room.height():
+        return QPoint(left, spot.bottom() + _GAP)
+    if spot.top() - _GAP - height > 0:
+        return QPoint(left, spot.top() - _GAP - height)
+    return QPoint(left, top)

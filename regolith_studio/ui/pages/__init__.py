@@ -55,7 +55,7 @@ What a page can rely on
   ``Started``, ``Progress`` and ``Partial`` events in a thread; requests are numbered, the newest of a
   queue wins, what an older one says is dropped. Progress, time left and the stop button are in the
   status bar and in the task list by themselves; ``context.session.cancel(number)`` cancels, and
-  :class:`~regolith_studio.ui.run_controller.RunController` runs one job with its state, time left and
+  :class:`~regolith_studio.ui.result_card.RunController` runs one job with its state, time left and
   result on a card. Never compute in a slot for more than 50 ms.
 * **Three-dimensional views**: ``make_view(context.views, theme.surroundings)`` from ``ui.views.factory``,
   filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.on_close`.

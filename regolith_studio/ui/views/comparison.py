@@ -19,7 +19,7 @@ from regolith_studio.scene.comparison import Divider, arrange, show_cuts, show_o
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.views.view import ViewFrame
 
 REACH = 8.0
 """Pixels from what is drawn at which it is still held."""

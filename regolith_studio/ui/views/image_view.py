@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, ThemeColors
-from regolith_studio.ui.views.view import CameraMouse, KeepFramed, Picture
+from regolith_studio.ui.views.view import CameraMouse, KeepFramed, Picture, SceneView
 
 
 class ImageView(QWidget):
@@ -133,3 +133,12 @@ class ImageView(QWidget):
         height, width, _ = pixels.shape
         self._image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
         self._stale = False
+
+
+def make_view(kind: str, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> SceneView:
+    """A view of the kind ``live`` or ``image``."""
+    if kind == "image":
+        return ImageView(surroundings, parent)
+    from regolith_studio.ui.views.live_view import LiveView
+
+    return LiveView(surroundings, parent)

@@ -28,9 +28,8 @@ from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, Sections, partners_of
-from regolith_studio.ui.views.factory import make_view
-from regolith_studio.ui.views.view import CameraLink, Picture, SceneView
-from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.views.image_view import make_view
+from regolith_studio.ui.views.view import CameraLink, Picture, SceneView, ViewFrame
 
 
 class FacetHover:

@@ -19,9 +19,8 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dataset.parameters import NOT_GIVEN
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fields import ChoiceBox, DecimalField, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.labels import rich_symbol
-from regolith_studio.ui.widgets.numbers import DecimalField, NumberSlider, NumberSpec
 
 Scalar = bool | int | float | str
 LARGEST_NUMBER = 2**31 - 1

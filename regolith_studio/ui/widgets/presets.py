@@ -13,7 +13,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.layout import control_row
 from regolith_studio.ui.translation import inert, tr
-from regolith_studio.ui.widgets.combo_box import ElidedComboBox
+from regolith_studio.ui.widgets.fields import ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
 
 MODIFIED = N_("{preset} (modified)")

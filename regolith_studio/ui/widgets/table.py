@@ -1,4 +1,4 @@
-"""Tables with a row for each particle: columns, model and view; and what descriptors are, as tool tips."""
+"""Tables with a row for each particle: columns, model and view, tips of descriptors; and tables of texts."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -13,10 +13,11 @@ from PySide6.QtCore import (
     QModelIndex,
     QObject,
     QPersistentModelIndex,
+    QSignalBlocker,
     Qt,
     Signal,
 )
-from PySide6.QtGui import QPixmap, QShowEvent
+from PySide6.QtGui import QPixmap, QShowEvent, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QTableView
 
 from regolith_studio.coarsening.weights import JACCARD
@@ -32,8 +33,7 @@ from regolith_studio.session.sample_table import (
     health_word,
     intervals_of,
 )
-from regolith_studio.ui.icons import pixmap
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import Theme, current_theme, pixmap
 from regolith_studio.ui.translation import inert, number_text, tr, translate
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 
@@ -419,3 +419,77 @@ class ParticleTable(QTableView):
     def _announce_current(self, index: QModelIndex) -> None:
         if not self._quiet and index.isValid():
             self.currentChosen.emit(self.particles.rows[index.row()].id)
+
+
+class TextTable(QTableView):
+    """Rows of texts; ``chosen`` carries the number of the row that the user has selected.
+
+    ``name``, ``spoken``: object name and accessible name. ``headings``: of the columns; texts are aligned
+    right but for the first column.
+    """
+
+    chosen = Signal(int)
+
+    def __init__(self, name: str, spoken: str, headings: Sequence[str]) -> None:
+        super().__init__()
+        self.setObjectName(name)
+        self.setAccessibleName(spoken)
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.setShowGrid(False)
+        self.setTabKeyNavigation(False)
+        self.setWordWrap(False)
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        self.verticalHeader().hide()
+        FontRowHeight(self, 9)
+        self.horizontalHeader().setHighlightSections(False)
+        self.horizontalHeader().setStretchLastSection(True)
+        self.rows = QStandardItemModel(0, len(headings), self)
+        self.rows.setHorizontalHeaderLabels(list(headings))
+        self.setModel(self.rows)
+        self.selectionModel().selectionChanged.connect(self._announce)
+
+    def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str]) -> None:
+        """Show other rows with their tool tips."""
+        with QSignalBlocker(self.selectionModel()):
+            self.rows.setRowCount(0)
+            for texts, tip in zip(rows, tips, strict=True):
+                items = [QStandardItem(text) for text in texts]
+                for column, item in enumerate(items):
+                    item.setToolTip(inert(tip))
+                    if column:
+                        item.setData(RIGHT, Qt.ItemDataRole.TextAlignmentRole)
+                self.rows.appendRow(items)
+        self.resizeColumnsToContents()
+
+    def selected(self) -> int | None:
+        """Number of the selected row."""
+        rows = self.selectionModel().selectedRows()
+        return rows[0].row() if rows else None
+
+    def select(self, row: int | None) -> None:
+        """Select a row, or none, without emitting a signal."""
+        with QSignalBlocker(self.selectionModel()):
+            if row is None:
+                self.clearSelection()
+            else:
+                self.selectRow(row)
+        self.viewport().update()
+
+    def text(self, row: int, column: int) -> str:
+        """Text of a cell."""
+        return self.rows.item(row, column).text()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.resizeColumnsToContents()  # the style sheet's font is known only now
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self.resizeColumnsToContents()
+
+    def _announce(self) -> None:
+        if (row := self.selected()) is not None:
+            self.chosen.emit(row)

@@ -10,11 +10,11 @@ from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
+from regolith_studio.ui.startup import MainThreadInvoker
 from regolith_studio.ui.widgets.toast import Toast
 from tests.dem.conftest import box_dataset
 from tests.dem.packings import cone

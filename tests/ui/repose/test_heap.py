@@ -16,10 +16,10 @@ from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import orbited
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
+from regolith_studio.ui.pages.repose.heap import MANY_DISCS, drawn_discs, particle_text
 from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.positions import PositionsDialog
-from regolith_studio.ui.pages.repose.section_plot import MANY_DISCS, drawn_discs, particle_text
 from tests.ui.repose.conftest import import_positions, pile_of
 
 

@@ -11,9 +11,9 @@ from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import JobCancelled
 from regolith_studio.jobs.events import Partial
 from regolith_studio.messages import to_json
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.repose.runs import checks_text
-from regolith_studio.ui.widgets.result_view import ResultState
+from regolith_studio.ui.result_card import ResultState
 from tests.ui.repose.conftest import import_positions, pile_of, small, watch_moments
 
 STOPPED = {

@@ -10,7 +10,7 @@ from regolith_studio.jobs.events import Progress
 from regolith_studio.studies.calibration import CalibrationParameter
 from regolith_studio.studies.repose import runs_from
 from regolith_studio.studies.repose_calibration import CalibrationRun, ReposeCalibration, angle_target
-from regolith_studio.ui.widgets.result_view import ResultState
+from regolith_studio.ui.result_card import ResultState
 from tests.ui.repose.conftest import small
 
 
@@ -114,7 +114,7 @@ def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, m
             time.sleep(0.01)
             yield Progress(1, 2)
 
-    monkeypatch.setattr(f"regolith_studio.ui.pages.repose.{name}.{job}", endless)
+    monkeypatch.setattr(f"regolith_studio.ui.pages.repose.calibration.{job}", endless)
     small(page, dataset)
     panel = getattr(page, name)
     page.commands()[f"start_{name}"]()

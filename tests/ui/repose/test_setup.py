@@ -15,8 +15,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import repose_jobs
-from regolith_studio.ui.pages.repose.limits import CaseScale
-from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.pages.repose.setup import CaseScale, SetupPanel
 from regolith_studio.ui.widgets.forms import ParameterForm
 
 

@@ -7,11 +7,11 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan import PAGE
+from regolith_studio.ui.startup import MainThreadInvoker
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.widgets.toast import Toast
 

@@ -29,9 +29,9 @@ from regolith_studio.session.recipe import Exports
 from regolith_studio.settings import settings_in
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
+from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
-from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")

@@ -37,17 +37,17 @@ from regolith_studio.jobs.representatives_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import equal_parts, scrolled, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import (
     DatasetControls,
     FolderPanel,
+    LibraryPanel,
     RepresentativesPanel,
     SizesPanel,
 )
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel, ExportsList, LossesLabel
-from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.views import (
     CELL,
     SHAPE_FIELDS,
@@ -59,8 +59,8 @@ from regolith_studio.ui.pages.dataset.views import (
     dataset_title,
     shapes,
 )
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 FIND, BUILD, EXPORT = "find", "build", "export"
 SETTINGS = (*SHAPE_FIELDS, *("weights", "settings", "seed", "target", "l_max", "level", "fit_options"))

@@ -17,14 +17,12 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.settings import CoarseningSettings
-from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import Collapsible
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import Theme, current_theme, icon
 from regolith_studio.ui.translation import inert, tr, translate
-from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider
 from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
 from regolith_studio.ui.widgets.labels import FixedHeightText, heading, hint_label
-from regolith_studio.ui.widgets.numbers import NumberSlider
 
 AMOUNTS = {
     "facets": "n_facets",

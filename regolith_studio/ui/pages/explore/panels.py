@@ -18,7 +18,9 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.results import Results
 from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import inert, number_text, tr, translate
+from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import (
     NOTE_LINES,
@@ -28,9 +30,7 @@ from regolith_studio.ui.widgets.labels import (
     rich_symbol,
     with_subscripts,
 )
-from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.table import definition
 
 

@@ -25,7 +25,7 @@ from regolith_studio.scene.figure import view_titles
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
-from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fields import ChoiceBox
 from regolith_studio.ui.widgets.plots.export import png_of_image
 
 MAX_SCALE = 6

@@ -36,9 +36,8 @@ from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.views.three_views import ThreeViews
-from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.labels import grouped_number, plain_symbol, short_number
-from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve

@@ -15,13 +15,11 @@ from regolith_studio.scene.comparison import OTHER, show_other
 from regolith_studio.scene.lecture_scenes import show_move
 from regolith_studio.scene.shapes import FIT, SceneShape
 from regolith_studio.ui.pages.lecture import texts
-from regolith_studio.ui.pages.lecture.lessons import lesson_columns
-from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
+from regolith_studio.ui.pages.lecture.lessons import PlaybackBar, lesson_columns
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.views.factory import make_view
-from regolith_studio.ui.views.view import CameraLink
-from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.views.image_view import make_view
+from regolith_studio.ui.views.view import CameraLink, ViewFrame
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries

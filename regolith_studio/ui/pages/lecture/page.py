@@ -15,11 +15,10 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.layout import name_tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
-from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView
-from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
+from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView, PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, font_share
 from regolith_studio.ui.translation import rich, tr
-from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fields import ChoiceBox
 
 FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
 """Initial font size relative to other pages; below so many of their lines in height, a smaller one."""

@@ -39,12 +39,12 @@ from regolith_studio.studies.population_tables import (
     target_table,
 )
 from regolith_studio.ui.layout import scrolled, tabs
+from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.heat_table import centred_hint
 from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, unbroken, with_subscripts
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 
 MIN_WIDTH, MIN_HEIGHT = 190, 180
 """Pixels of one plot; where a row has no room for all, there are more rows."""

@@ -39,13 +39,20 @@ from regolith_studio.shape_models.protocol import EditableModel, FittedModel, re
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, request_from
+from regolith_studio.ui.pages.model.controls import (
+    DistributionsPanel,
+    DrawControls,
+    LiveShape,
+    ShapeGallery,
+    SourceControls,
+    default_degree,
+    request_from,
+)
 from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
-from regolith_studio.ui.pages.model.views import DistributionsPanel, LiveShape, ShapeGallery
-from regolith_studio.ui.run_controller import RunController
+from regolith_studio.ui.result_card import RunController
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import in_a_sentence, tr, translate
-from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.toast import Toast
 

@@ -39,11 +39,15 @@ from regolith_studio.jobs.repose_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
 from regolith_studio.studies.repose import ReposeStudyRun
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.repose.calibration import CalibrationController, CalibrationPanel
-from regolith_studio.ui.pages.repose.export import export_measurement
+from regolith_studio.ui.pages.repose.calibration import (
+    CalibrationController,
+    CalibrationPanel,
+    StudyController,
+    StudyPanel,
+)
 from regolith_studio.ui.pages.repose.heap import (
     HeapSections,
     heap_record,
@@ -52,15 +56,16 @@ from regolith_studio.ui.pages.repose.heap import (
     run_origin,
     scale_of_run,
 )
-from regolith_studio.ui.pages.repose.limits import CaseScale, LimitsStrip
 from regolith_studio.ui.pages.repose.player import RunPlayer
-from regolith_studio.ui.pages.repose.positions import choose_positions, read_pile
-from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
-from regolith_studio.ui.pages.repose.setup import SetupPanel, engine_table
-from regolith_studio.ui.pages.repose.study import StudyController, StudyPanel
-from regolith_studio.ui.run_controller import RunController
+from regolith_studio.ui.pages.repose.positions import choose_positions, export_measurement, read_pile
+from regolith_studio.ui.pages.repose.runs import (
+    RunsPanel,
+    checks_text,
+    duration_text,
+)
+from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""

@@ -16,9 +16,8 @@ from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import Direction, filled, framing_pose
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr
-from regolith_studio.ui.views.factory import make_view
-from regolith_studio.ui.views.view import CameraLink
-from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.views.image_view import make_view
+from regolith_studio.ui.views.view import CameraLink, ViewFrame
 
 LOW_SIDE = Direction("", (0.35, -1.0, 0.22), (0.0, 0.0, 1.0))
 """Flanks and their slope are seen from a low side."""

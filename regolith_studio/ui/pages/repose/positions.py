@@ -1,4 +1,4 @@
-"""Reading particle positions of other programs; what the file does not state is asked in one dialog."""
+"""Positions of other programs, whose file may not state all; and the figure and file of a measurement."""
 
 import re
 from pathlib import Path
@@ -15,17 +15,22 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.run_io import read_final_state
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, RegolithError
+from regolith_studio.io.atomic import staged_folder
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.messages import N_
 from regolith_studio.readers.position_formats import named_columns
 from regolith_studio.readers.positions import ParticlePositions, asks_for_columns, read_positions
 from regolith_studio.readers.units import unit_factor
-from regolith_studio.ui.dialogs.opening import LABELS
+from regolith_studio.studies.figures.repose import write_section_figure
+from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label, short_number
-from regolith_studio.ui.widgets.numbers import DecimalField
+from regolith_studio.ui.widgets.toast import Toast
 
 POSITIONS = N_(
     "Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)"
@@ -144,3 +149,21 @@ def read_pile(parent: QWidget, path: Path) -> tuple[ParticleState, tuple[str, ..
     numbers = np.zeros(n, dtype=np.int64)
     state = ParticleState(read.points, diameters, still, numbers, 0.0, float("inf"), N_("imported"))
     return state, read.notes
+
+
+def export_measurement(
+    parent: QWidget, toast: Toast, pile: ParticleState, measured: ReposeMeasurement
+) -> None:
+    """Ask for a folder and write ``repose.json``, ``sections.png`` and ``sections.svg``."""
+    name = FolderDialog.ask(parent, tr("Export figure and JSON"))
+    if not name:
+        return
+    try:
+        with staged_folder(Path(name), "repose") as stage:
+            document = {"length_unit": "m"} | measurement_document(measured)
+            (stage / "repose.json").write_bytes(json_bytes(document))
+            write_section_figure(pile.points, pile.diameters, measured, stage)
+    except RegolithError as error:
+        toast.problem(str(error))
+        return
+    toast.note(tr("Figure and JSON are in {name}.", name=name))

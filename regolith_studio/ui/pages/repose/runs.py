@@ -12,7 +12,7 @@ from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.text_table import TextTable
+from regolith_studio.ui.widgets.table import TextTable
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     N_("Static friction"): ("case", "contact", "static_friction"),

@@ -28,13 +28,13 @@ from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import has_weights, statistics_distribution, statistics_table
 from regolith_studio.ui.layout import control_row
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
-from regolith_studio.ui.widgets.combo_box import ElidedComboBox
+from regolith_studio.ui.widgets.fields import ElidedComboBox
 from regolith_studio.ui.widgets.labels import rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.table import FontRowHeight, definition
 
 ZINGG = ("flatness", "elongation")

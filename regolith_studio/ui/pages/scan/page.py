@@ -27,16 +27,14 @@ from regolith_studio.jobs.scan_jobs import (
 )
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.scan.controls import SegmentationControls
+from regolith_studio.ui.pages.scan.controls import SegmentationControls, WorkflowPanel
 from regolith_studio.ui.pages.scan.corrections import Corrections
 from regolith_studio.ui.pages.scan.files import ParticleMaking, SettingsFiles, VolumeOpening
 from regolith_studio.ui.pages.scan.painting import Painting
 from regolith_studio.ui.pages.scan.slices import SlicesView
 from regolith_studio.ui.pages.scan.tools import Brush, BrushPanel, EditsPanel, ObjectsPanel
-from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
-from regolith_studio.ui.run_controller import RunController
+from regolith_studio.ui.result_card import ResultRecord, RunController
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.result_view import ResultRecord
 
 DELAY = 120
 """Milliseconds from the last change to the preview."""

@@ -25,9 +25,8 @@ from regolith_studio.ui.pages.scan.slice_view import SliceView, colours_of_label
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush, BrushPanel
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import number_text, tr, tr_count
-from regolith_studio.ui.views.factory import make_view
-from regolith_studio.ui.views.view import CameraLink
-from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.views.image_view import make_view
+from regolith_studio.ui.views.view import CameraLink, ViewFrame
 from regolith_studio.ui.widgets.labels import ElidedLabel, grouped_number, hint_label
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 from regolith_studio.ui.widgets.plots.curves import plain_decades

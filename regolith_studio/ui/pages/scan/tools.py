@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QListWidget,
-    QPushButton,
     QRadioButton,
     QVBoxLayout,
     QWidget,
@@ -32,11 +31,11 @@ from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
-from regolith_studio.ui.pages.scan.controls import choice
+from regolith_studio.ui.pages.scan.controls import button, choice
 from regolith_studio.ui.translation import number_text, tr
+from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec
 from regolith_studio.ui.widgets.labels import heading, hint_label
-from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
-from regolith_studio.ui.widgets.text_table import TextTable
+from regolith_studio.ui.widgets.table import TextTable
 
 CLASSES = (
     PixelClass("background", False),
@@ -236,14 +235,6 @@ class BrushPanel(TrainingPanel):
         _add_rows(layout, rows)
         layout.addWidget(self.state)
         layout.addStretch(1)
-
-
-def button(name: str, words: str, tip: str) -> QPushButton:
-    """A button with its object name and tool tip."""
-    made = QPushButton(words)
-    made.setObjectName(name)
-    made.setToolTip(tip)
-    return made
 
 
 def swatch(colour: str) -> QIcon:

@@ -23,8 +23,8 @@ from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import inert, tr, translate
+from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label
-from regolith_studio.ui.widgets.numbers import DecimalField
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 AXES = (

@@ -19,15 +19,13 @@ from regolith_studio.session.study_requests import COMPOUND, chosen_rows, varied
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.loss_variants import LossVariant
 from regolith_studio.studies.sweeps import SWEEPS
-from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.studies.gallery import MAX_PARTICLES, GalleryPanel
 from regolith_studio.ui.pages.studies.plots import CoarseningStudyPanel, LmaxStudyPanel
-from regolith_studio.ui.pages.studies.sweep import LossSelector, SweepPanel
-from regolith_studio.ui.run_controller import RunController
+from regolith_studio.ui.pages.studies.sweep import MAX_PARTICLES, GalleryPanel, LossSelector, SweepPanel
+from regolith_studio.ui.result_card import ResultRecord, ResultState, RunController
 from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState
 
 NO_PARTICLE = N_("No particle is open; open a mesh first.")
 

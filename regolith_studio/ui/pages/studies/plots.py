@@ -25,8 +25,10 @@ from regolith_studio.studies.sweeps import (
     significant,
 )
 from regolith_studio.ui.layout import control_row, left_aligned
+from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
+from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.heat_table import (
     HeatTable,
     centred_hint,
@@ -35,11 +37,9 @@ from regolith_studio.ui.widgets.heat_table import (
     set_head_tips,
 )
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
-from regolith_studio.ui.widgets.numbers import DecimalField
 from regolith_studio.ui.widgets.plots.base import Numbers
 from regolith_studio.ui.widgets.plots.curves import HOVER_DISTANCE, CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.plots.export import plain_text
-from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 from regolith_studio.ui.widgets.table import FontRowHeight, definition
 
 Values = tuple[float, ...]
