@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from regolith_studio.cli.entry import run
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
@@ -33,10 +34,11 @@ def ellipsoids(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture
-def fit(command, ellipsoids: Path, tmp_path: Path) -> Path:
-    assert command("fit", ellipsoids, "-o", tmp_path / "fit", "--l-max", 8).code == 0
-    return tmp_path / "fit"
+@pytest.fixture(scope="module")
+def fit(ellipsoids: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("fitted") / "fit"
+    assert run(["fit", str(ellipsoids), "-o", str(folder), "--l-max", "8"]) == 0
+    return folder
 
 
 @pytest.mark.slow
