@@ -282,7 +282,7 @@ def shorten_demo() -> Iterator[None]:
     """One particle, three representatives, polyhedra by quadrics and a heap of 40 particles in ``demo``."""
     from regolith_studio.cli import recipe
     from regolith_studio.dataset.parameters import LiftingCylinderTest
-    from regolith_studio.dem.evaluation.settings import EvaluationSettings
+    from regolith_studio.dem.evaluation import EvaluationSettings
     from regolith_studio.jobs import repose_jobs
     from regolith_studio.readers.particles import sample_particles
     from regolith_studio.session.batch import inputs

@@ -15,8 +15,8 @@ import numpy as np
 
 from benchmarks.heaps import KINDS, SOLID_FRACTION, Array, heap
 from regolith_studio.dem.angle_of_repose import measure_repose
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.evaluation.section import NotAPileError
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
 
 ANGLES = (20, 27, 34, 40)
 GRAINS = (150, 200, 300, 1000, 5000)

@@ -8,7 +8,7 @@ import numpy as np
 from regolith_studio.cli.entry import run
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 
 
 def write_inputs(folder: Path) -> None:

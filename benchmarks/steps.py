@@ -31,10 +31,9 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients, degrees, to_pyshtools
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.harmonics.synthesis import radii_on_icosphere
+from regolith_studio.harmonics.synthesis import radii_on_icosphere, reconstruct
 from regolith_studio.imaging.extraction import extract_particles
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from regolith_studio.dem.case import ReposeCase
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
-    from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.harmonics.synthesis import reconstruct
     from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.jobs.repose_jobs import ReposeRequest

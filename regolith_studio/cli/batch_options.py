@@ -1,22 +1,62 @@
-"""Options of commands that may work on thousands of meshes: resumed, on a cluster, from an archive."""
+"""Options of commands for thousands of meshes: in processes, on a cluster, resumed, from an archive."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
-from regolith_studio.cli.inputs import ReadingOptions
-from regolith_studio.cli.options import usage_errors
+from regolith_studio.cli.options import ReadingOptions, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.settings import settings_in
 
 if TYPE_CHECKING:
+    from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.recipe import Outputs
+
+
+Runner = Annotated[
+    str,
+    typer.Option(
+        "--runner", help="Executor: processes (of this machine) or dask (a cluster).", metavar="NAME"
+    ),
+]
+Address = Annotated[
+    str,
+    typer.Option(
+        "--address",
+        help="Dask scheduler, tcp://HOST:8786 or tls://HOST:8786; a local one is started if omitted.",
+        metavar="URL",
+        show_default=False,
+    ),
+]
+Tls = Annotated[
+    Path | None,
+    typer.Option(
+        "--tls",
+        help="Folder with ca.pem, cert.pem and key.pem for a tls:// address.",
+        metavar="DIR",
+        show_default=False,
+    ),
+]
+
+
+@contextmanager
+def chosen_executor(runner: str, jobs: int, address: str, tls: Path | None) -> "Iterator[Executor]":
+    """The executor that the options ask for, closed at the end; names the status page of a cluster."""
+    from regolith_studio.jobs.executor import ExecutorSettings
+
+    with usage_errors():
+        executor = ExecutorSettings(runner, jobs, address, tls).open()
+    with closing(executor):
+        if executor.dashboard:
+            print_errors([f"{executor.workers} workers; dashboard {executor.dashboard}"])
+        yield executor
+
 
 MOST_IN_MEMORY = 2000
 """Members of an archive that are read into memory together."""
@@ -53,7 +93,7 @@ class BatchOptions:
     ) -> None:
         """Work on one particle after the other with the results on the disk, print what was written, end."""
         from regolith_studio.readers.coefficient_tables import table_convention
-        from regolith_studio.readers.units import unit_factor
+        from regolith_studio.readers.settings import unit_factor
         from regolith_studio.session.recipe import FilesEntry, Recipe
         from regolith_studio.session.run_recipe import run_recipe
 

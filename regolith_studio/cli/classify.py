@@ -211,7 +211,7 @@ def train_objects(
     from regolith_studio.imaging.segmentation.object_classifier import OBJECT_CLASSES
     from regolith_studio.jobs.classifier_jobs import ClassifiedObjects, train_on_objects, write_objects
     from regolith_studio.jobs.scan_jobs import scratch_folder
-    from regolith_studio.readers.object_examples import read_object_examples
+    from regolith_studio.readers.shape_tables import read_object_examples
 
     with usage_errors():
         given, settings = contents.of(scan), grains.recipe

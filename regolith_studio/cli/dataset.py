@@ -8,7 +8,6 @@ import typer
 
 from regolith_studio.cli.batch_options import BatchOptions, check_fits_memory
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     CoarseningOptions,
     Folder,
@@ -16,9 +15,11 @@ from regolith_studio.cli.options import (
     Json,
     Meshes,
     Preset,
+    ReadingOptions,
     Seed,
     StoppingOptions,
     claim_file,
+    exit_code,
     output_path,
     usage_errors,
     values,

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from regolith_studio.cli.batch_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.options import Jobs, Json, OptionalFolder, claim_labels, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.cli.volume_options import MAX_H, GrainOptions, VolumeOptions
@@ -64,7 +64,7 @@ def read_scan_table(path: Path) -> tuple[ScanRow, ...]:
 
     An empty cell leaves the option as it is for all scans. Files are looked up beside the table.
     """
-    from regolith_studio.readers.file_bytes import read_bytes
+    from regolith_studio.readers.sandbox.parent import read_bytes
 
     try:
         lines = read_bytes(path, _LARGEST).decode("utf-8-sig").splitlines()

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
     Json,
+    ReadingOptions,
     Seed,
     claim_json,
+    exit_code,
     output_path,
     usage_errors,
     values,
@@ -132,7 +133,7 @@ def generate(
     seed: Seed = 0,
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
-    from regolith_studio.harmonics.surface import DEFAULT_LEVEL
+    from regolith_studio.harmonics.synthesis import DEFAULT_LEVEL
     from regolith_studio.io.atomic import staged_folder, staged_together
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
@@ -280,7 +281,7 @@ def write_particles(
     folder: Path, made: "GeneratedParticles", format_: str, level: int | None, jobs: "int | Executor"
 ) -> dict[str, Any]:
     """Write drawn particles into an existing folder, and what is known of them; returns the document."""
-    from regolith_studio.harmonics.surface import level_for
+    from regolith_studio.harmonics.synthesis import level_for
     from regolith_studio.jobs.model_jobs import write_meshes
     from regolith_studio.session.outputs import particles as outputs
 
@@ -294,6 +295,6 @@ def write_particles(
 
 
 def _model_bytes(made: "GeneratedParticles") -> bytes:
-    from regolith_studio.shape_models.io import model_bytes
+    from regolith_studio.shape_models.models import model_bytes
 
     return model_bytes(made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})

@@ -41,7 +41,7 @@ def match(
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.io.tables import write_table
     from regolith_studio.jobs.matching_jobs import MatchRequest, match_materials
-    from regolith_studio.readers.units import unit_factor
+    from regolith_studio.readers.settings import unit_factor
 
     with usage_errors():
         unit_factor(unit)
@@ -51,8 +51,8 @@ def match(
     found, problems = run_with_progress(match_materials(target, candidates, request, jobs))
     table = found.table(mass)
     if output is not None:
-        from regolith_studio.studies.figures.files import write_figure
-        from regolith_studio.studies.figures.matching import matching_figure
+        from regolith_studio.studies.figures import write_figure
+        from regolith_studio.studies.figures.population import matching_figure
 
         with staged_folder(output, "match") as stage:
             write_table(table, stage, "match")

@@ -24,7 +24,7 @@ def draw_three_views(
     particle: "Particle", outcome: "CoarsenedParticle", choices: "Choices", path: Path
 ) -> None:
     """Draw particle, fit and polyhedron into a PNG file."""
-    from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.harmonics.synthesis import reconstruct
 
     coarse = outcome.coarsened
     if coarse is None:

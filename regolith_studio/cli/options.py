@@ -1,7 +1,7 @@
-"""Options that several commands share, with their help, and groups of them."""
+"""Options that several commands share, groups of them, and reading the particles that they name."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -10,16 +10,59 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import option_of
+from regolith_studio.cli.terminal import print_errors, run_with_progress
 from regolith_studio.coarsening.settings import DEFAULT_PRESET, CoarseningSettings
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.io.output_lock import output_lock
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE, resource
 from regolith_studio.settings import setting_of
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
+    from regolith_studio.readers.particles import LoadedParticles
     from regolith_studio.session.choices import Choices
+
+
+Convention = Annotated[
+    str,
+    typer.Option(
+        "--convention",
+        help="Convention of tables of coefficients: auto, complex, shtools-4pi or shtools-ortho.",
+        metavar="C",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class ReadingOptions(ReadingSettings):
+    """How meshes and tables are read."""
+
+    convention: Convention = "auto"
+
+    def read(self, paths: Sequence[Path], l_max: int | None = None) -> "LoadedParticles":
+        """The particles in files and folders; unreadable files are reported on stderr.
+
+        ``l_max``: degree above which coefficients of tables are left out.
+        """
+        from regolith_studio.jobs.particle_jobs import load_particles
+        from regolith_studio.readers.coefficient_tables import TableReading, table_convention
+        from regolith_studio.readers.settings import unit_factor
+
+        with usage_errors():
+            unit_factor(self.unit)
+            tables = TableReading(l_max, table_convention(self.convention))
+        steps = load_particles(tuple(paths), ReadingSettings.of(self), tables)
+        loaded: LoadedParticles = run_with_progress(steps)
+        print_errors(loaded.left_out)
+        print_errors(problem.with_path for problem in loaded.problems)
+        return loaded
+
+
+def exit_code(loaded: "LoadedParticles", failures: int = 0) -> int:
+    """1 if a file, named itself or in a folder, or any particle failed."""
+    return 1 if failures or loaded.problems else 0
 
 
 def mesh_path(text: str) -> Path:
@@ -41,14 +84,6 @@ Jobs = Annotated[
     int,
     typer.Option(
         "--jobs", "-j", min=0, max=1024, help="Number of parallel processes; 0 for one per core.", metavar="N"
-    ),
-]
-Convention = Annotated[
-    str,
-    typer.Option(
-        "--convention",
-        help="Convention of tables of coefficients: auto, complex, shtools-4pi or shtools-ortho.",
-        metavar="C",
     ),
 ]
 

@@ -8,7 +8,6 @@ import typer
 
 from regolith_studio.cli.batch_options import BatchOptions, check_fits_memory
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     CoarseningOptions,
     Folder,
@@ -19,11 +18,13 @@ from regolith_studio.cli.options import (
     Meshes,
     OptionalFolder,
     Preset,
+    ReadingOptions,
     Seed,
     StoppingOptions,
     claim_file,
     claim_folder,
     claim_json,
+    exit_code,
     output_path,
     usage_errors,
 )

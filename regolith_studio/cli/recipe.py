@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.batch_options import Resume
+from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chosen_executor
 from regolith_studio.cli.dataclass_options import option_of
-from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.generate import write_particles
 from regolith_studio.cli.offscreen_process import draw_in_process, draw_three_views
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed

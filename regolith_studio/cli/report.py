@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.offscreen_process import draw_in_process
 from regolith_studio.cli.options import (
     Degrees,
@@ -14,13 +13,15 @@ from regolith_studio.cli.options import (
     Jobs,
     Json,
     Meshes,
+    ReadingOptions,
+    exit_code,
     mesh_path,
     usage_errors,
     whole_numbers,
 )
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
-from regolith_studio.session.report.settings import ReportSettings
+from regolith_studio.session.report.sections import ReportSettings
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh

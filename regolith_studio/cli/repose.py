@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from regolith_studio.cli.batch_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
@@ -225,7 +225,7 @@ def positions_in(file: Path, unit: str, diameter: float, columns: str = "") -> t
 
 def metres_in(unit: str) -> float:
     """Metres in a unit of length; an unknown one is bad use."""
-    from regolith_studio.readers.units import unit_factor
+    from regolith_studio.readers.settings import unit_factor
 
     with usage_errors():
         return unit_factor(unit) * 1e-6

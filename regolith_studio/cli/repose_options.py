@@ -11,7 +11,7 @@ import typer
 from regolith_studio.cli.options import usage_errors, values
 
 if TYPE_CHECKING:
-    from regolith_studio.dem.evaluation.settings import EvaluationSettings
+    from regolith_studio.dem.evaluation import EvaluationSettings
     from regolith_studio.jobs.repose_jobs import ReposeRequest
 
 Particles = Annotated[
@@ -117,7 +117,7 @@ def varied_values(text: str, form: str = "what varies as KEY=V1,V2") -> tuple[st
 
 def evaluation_settings(entries: list[str] | None) -> "EvaluationSettings":
     """Settings of the evaluation from KEY=VALUE entries; a wrong one is a usage error."""
-    from regolith_studio.dem.evaluation.settings import EvaluationSettings
+    from regolith_studio.dem.evaluation import EvaluationSettings
 
     settings: EvaluationSettings = settings_from(
         EvaluationSettings, values(entries, "setting"), "evaluation setting"

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
-from regolith_studio.cli.options import FACETS, Facets, Json, LMax, usage_errors
+from regolith_studio.cli.options import FACETS, Facets, Json, LMax, ReadingOptions, usage_errors
 from regolith_studio.cli.terminal import print_json
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, CoarseningSettings
 

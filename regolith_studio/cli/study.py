@@ -10,7 +10,6 @@ import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.generate import shape_source
-from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     FACETS,
     CoarseningOptions,
@@ -21,8 +20,10 @@ from regolith_studio.cli.options import (
     Json,
     Meshes,
     Preset,
+    ReadingOptions,
     Resume,
     Seed,
+    exit_code,
     usage_errors,
     whole_numbers,
 )

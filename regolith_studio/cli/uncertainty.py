@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     FACETS,
     CoarseningOptions,
@@ -16,8 +15,10 @@ from regolith_studio.cli.options import (
     Json,
     Meshes,
     Preset,
+    ReadingOptions,
     Resume,
     Seed,
+    exit_code,
     usage_errors,
 )
 from regolith_studio.cli.repose_options import Contact, EngineKey, Measure, Particles, Test

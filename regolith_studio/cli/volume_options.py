@@ -88,7 +88,7 @@ class VolumeOptions:
     def of(self, volume: Path) -> "VolumeInput":
         """The volume with what the options say of it; a wrong one is bad use."""
         from regolith_studio.jobs.extraction_settings import VolumeInput
-        from regolith_studio.readers.units import unit_factor
+        from regolith_studio.readers.settings import unit_factor
 
         if self.unit:
             unit_factor(self.unit)
@@ -211,7 +211,7 @@ def threshold_from(text: str, dark: bool) -> ThresholdSettings:
 
 def _edges(text: str) -> tuple[float, ...] | None:
     """One edge or three, written as ``2.3`` or ``2.3,2.3,5``."""
-    from regolith_studio.readers.units import MAX_VOXEL, MIN_VOXEL
+    from regolith_studio.readers.settings import MAX_VOXEL, MIN_VOXEL
 
     if not text:
         return None

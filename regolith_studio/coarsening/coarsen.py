@@ -20,8 +20,7 @@ from regolith_studio.coarsening.settings import DEFAULT_METHOD, DEFAULT_PRESET, 
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.descriptors.describe import Descriptors, describe, relative_errors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron

@@ -11,13 +11,12 @@ from regolith_studio.coarsening.core.polyhedron_measures import MeasuredPolyhedr
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.minimum_box import minimum_box
 from regolith_studio.geometry.minimum_box.hull_topology import Facets
-from regolith_studio.geometry.minimum_box.search import minimum_box
 
 
 def loss(weights: LossWeights, errors: Mapping[str, float], jaccard_distance: float) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from regolith_studio.coarsening.lower_bounds import sphericity_reason
 from regolith_studio.coarsening.weights import WEIGHT_KEYS, LossWeights
-from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import relative_errors
 from regolith_studio.messages import N_, Message, Number, join_messages
 
 EXACT = 1e-6

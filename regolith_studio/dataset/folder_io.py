@@ -36,7 +36,7 @@ from regolith_studio.errors import DatasetError, InputError, SchemaVersionError,
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import Content, recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json
-from regolith_studio.io.stl import HEADER_SIZE
+from regolith_studio.io.triangles import HEADER_SIZE
 
 DOCUMENT, README = "dataset.json", "README.txt"
 IGNORED_FILES = {".DS_Store", "Thumbs.db", "desktop.ini"}

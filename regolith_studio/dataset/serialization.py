@@ -29,7 +29,7 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Source
 from regolith_studio.io.json_text import parse_strict_json
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 
 
 def shape_bytes(shape: Polyhedron, index: int, count: int) -> tuple[bytes, ...]:

@@ -29,7 +29,7 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.topology import edge_table
 from regolith_studio.io.atomic import recover_folder
-from regolith_studio.io.stl import stl_triangles
+from regolith_studio.io.triangles import stl_triangles
 
 REPRESENTATION_TOLERANCE = 1e-4
 """Of the errors of the shapes, in standard deviations of the population."""

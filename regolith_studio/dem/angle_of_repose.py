@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import t as student_t
 
+from regolith_studio.dem.evaluation import HEAP_SHARE, MAX_CURVATURE, EvaluationSettings
 from regolith_studio.dem.evaluation.profile import Profile, base_level, project, surface_profile
 from regolith_studio.dem.evaluation.section import NotAPileError, Section, evaluate_section
-from regolith_studio.dem.evaluation.settings import HEAP_SHARE, MAX_CURVATURE, EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_, Message, Number

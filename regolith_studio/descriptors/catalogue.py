@@ -15,11 +15,10 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.feret import feret_max, feret_min
+from regolith_studio.geometry.feret import feret_max, feret_min, length_width_thickness
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh, ellipsoid_area, equal_ellipsoid, volume_and_area
 from regolith_studio.geometry.oriented_box import OrientedBox, heuristic_box, minimum_volume_box
-from regolith_studio.geometry.three_chords import length_width_thickness
 from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
 from regolith_studio.messages import N_
 

@@ -15,8 +15,8 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh, bounds_of
+from regolith_studio.geometry.minimum_box import TooManyCurvesError, minimum_box
 from regolith_studio.geometry.minimum_box.hull_topology import Facets, facets_of_hull
-from regolith_studio.geometry.minimum_box.search import TooManyCurvesError, minimum_box
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 JITTER = 1e-10
@@ -89,7 +89,7 @@ _of_meshes: WeakKeyDictionary[Mesh, OrientedBox] = WeakKeyDictionary()
 def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     """The oriented bounding box of least volume.
 
-    Found by the branch and bound of :mod:`regolith_studio.geometry.minimum_box.search` (O'Rourke 1985: two
+    Found by the branch and bound of :mod:`regolith_studio.geometry.minimum_box` (O'Rourke 1985: two
     adjacent sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
     tie in volume, the one with the smallest sum of edges is taken. The box of a mesh is kept with it.
 

@@ -7,7 +7,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.radius_function import best_fit_ellipsoid
-from regolith_studio.harmonics.surface import radii, reconstruct
+from regolith_studio.harmonics.synthesis import radii, reconstruct
 
 N_OUTLINE = 1024
 """Points of a section: 34 for each of the 30 waves round it at degree 30."""

@@ -17,8 +17,7 @@ from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.descriptors.describe import Descriptors, describe, relative_errors
 from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
@@ -27,7 +26,7 @@ from regolith_studio.geometry.ray_casting import jaccard_distance
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FIT_DEGREE, FitOptions
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for, is_compiled
 from regolith_studio.jobs.events import (
     Failed,

@@ -91,7 +91,7 @@ def run_task(name: str) -> None:
     from regolith_studio.geometry.sphere_points import icosphere
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.star_point import star_point_visibility
-    from regolith_studio.harmonics.surface import gallery, reconstruct
+    from regolith_studio.harmonics.synthesis import gallery, reconstruct
     from regolith_studio.readers.particles import sample_particles
 
     sphere = icosphere(2)

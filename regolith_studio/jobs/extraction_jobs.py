@@ -44,7 +44,7 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
 from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays, scratch_folder, segment_volume
 from regolith_studio.messages import N_, Message
-from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.readers.volumes.files import member_folder, member_names
 from regolith_studio.readers.volumes.region import RegionSettings
 

@@ -26,7 +26,7 @@ from regolith_studio.imaging.settings import (
     TileSettings,
 )
 from regolith_studio.imaging.volume import VolumeKind
-from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.readers.volumes.read import VolumeFile, open_slabs
 from regolith_studio.readers.volumes.region import RegionSettings

@@ -15,8 +15,7 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -25,8 +24,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.surface import gallery
-from regolith_studio.harmonics.synthesis import radii_on_icosphere
+from regolith_studio.harmonics.synthesis import gallery, radii_on_icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps

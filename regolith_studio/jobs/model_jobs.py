@@ -13,10 +13,10 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
-from regolith_studio.harmonics.surface import level_for, reconstruct
+from regolith_studio.harmonics.synthesis import level_for, reconstruct
 from regolith_studio.io.atomic import write_in_stage
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of

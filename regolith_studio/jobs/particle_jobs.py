@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import Descriptors, describe, description_steps
+from regolith_studio.descriptors.describe import Descriptors, describe, description_steps, relative_errors
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
@@ -19,7 +18,7 @@ from regolith_studio.harmonics.coefficients import checked_degree
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FIT_DEGREE, FitOptions
 from regolith_studio.harmonics.star_point import StarPointVisibility, hidden_faces, star_point_visibility
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps, result_of
 from regolith_studio.jobs.executor import Executor, open_executor, value_of

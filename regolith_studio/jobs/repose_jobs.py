@@ -13,8 +13,8 @@ from regolith_studio.dem.drum_angle import DrumMeasurement, measure_drum
 from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.evaluation.section import NotAPileError
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing
 from regolith_studio.dem.initial_packing import loose_column, no_particles
 from regolith_studio.dem.run_io import (

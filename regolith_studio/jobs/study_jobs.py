@@ -28,12 +28,12 @@ from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, S
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies import StudyProgress
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants
 from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy
 from regolith_studio.studies.population import population_study
-from regolith_studio.studies.progress import StudyProgress
 
 MAX_NUMBERS = 4096
 """Largest array that is kept; larger ones, and answers of other kinds, are computed again."""

@@ -227,7 +227,7 @@ def _recipe(chain: Chain, request: UncertaintyRequest) -> dict[str, Any]:
 
 def _write(budget: UncertaintyBudget, folder: Path) -> None:
     """Write tables, document and figure of what is known so far in one step."""
-    from regolith_studio.studies.figures.uncertainty import write_uncertainty  # matplotlib
+    from regolith_studio.studies.figures.repose import write_uncertainty  # matplotlib
 
     with staged_folder(folder, KIND) as stage:
         write_uncertainty(budget, stage)

@@ -10,7 +10,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.io.file_names import natural_key
 from regolith_studio.readers.error_messages import display_name, printable
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.sandbox.messages import SandboxMessage
+from regolith_studio.readers.sandbox import SandboxMessage
 from regolith_studio.readers.sandbox.parent import (
     BASE_SECONDS,
     MAX_FILE_BYTES,

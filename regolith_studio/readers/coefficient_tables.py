@@ -11,9 +11,8 @@ from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.io import from_complex_rows, from_shtools_rows
 from regolith_studio.readers.error_messages import lower_first, message_about, plural
-from regolith_studio.readers.file_bytes import sha256_of
-from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
-from regolith_studio.readers.units import unit_factor
+from regolith_studio.readers.sandbox.parent import Sandbox, sha256_of, shared_sandbox
+from regolith_studio.readers.settings import unit_factor
 
 __all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
 
@@ -157,7 +156,7 @@ def read_table_particle(
     Raises FileError with one sentence if the file is no such table. Raises GeometryError with one sentence
     if its surface passes through its centre.
     """
-    from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.harmonics.synthesis import reconstruct
 
     l_max = tables.l_max
     table = read_coefficients(path, unit, convention=tables.convention, sandbox=sandbox)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import plural, printable
-from regolith_studio.readers.units import unit_named
+from regolith_studio.readers.settings import unit_named
 
 COMMENTS = (b"#", b"%", b"!", b"//")
 MAX_COLUMNS = 1000

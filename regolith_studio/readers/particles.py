@@ -35,11 +35,9 @@ from regolith_studio.readers.error_messages import (
     plural,
     printable,
 )
-from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
-from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
-from regolith_studio.readers.settings import AS_USUAL, ReadingSettings
-from regolith_studio.readers.units import unit_factor
+from regolith_studio.readers.sandbox.parent import Sandbox, sha256_of, shared_sandbox
+from regolith_studio.readers.settings import AS_USUAL, ReadingSettings, unit_factor
 from regolith_studio.readers.zip_members import SUFFIX
 from regolith_studio.resources import resource
 

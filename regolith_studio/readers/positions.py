@@ -12,7 +12,7 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.readers.position_formats import NAME_THEM
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
-from regolith_studio.readers.units import UNITS, unit_factor
+from regolith_studio.readers.settings import UNITS, unit_factor
 
 __all__ = ["ParticlePositions", "asks_for_columns", "read_positions"]
 

@@ -15,13 +15,13 @@ from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sphere_grid import sphere_grid
-from regolith_studio.harmonics.surface import radii
+from regolith_studio.harmonics.synthesis import radii
 from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.own_files import arrays_from
 from regolith_studio.readers.error_messages import lower_first, message_about, printable
-from regolith_studio.readers.file_bytes import read_bytes
-from regolith_studio.readers.units import unit_factor
-from regolith_studio.shape_models import io as model_io
+from regolith_studio.readers.sandbox.parent import read_bytes
+from regolith_studio.readers.settings import unit_factor
+from regolith_studio.shape_models import models as model_io
 from regolith_studio.shape_models.materials import MaterialCard, card_from, materials
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample

@@ -13,7 +13,7 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.errors import FileError, InputError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.surface import gallery
+from regolith_studio.harmonics.synthesis import gallery
 from regolith_studio.io.atomic import hidden_folder
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import open_executor, value_of

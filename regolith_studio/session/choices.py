@@ -19,8 +19,7 @@ from regolith_studio.descriptors.catalogue import BOX_METRICS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.readers.settings import ReadingSettings
-from regolith_studio.readers.units import unit_factor
+from regolith_studio.readers.settings import ReadingSettings, unit_factor
 from regolith_studio.settings import setting
 
 Scalar = bool | int | float | str

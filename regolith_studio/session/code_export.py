@@ -48,7 +48,7 @@ def as_python(choices: Choices, source: str) -> str:
         *(["from regolith_studio.coarsening.stopping_criteria import coarsen_below"] if by_error else []),
         "from regolith_studio.coarsening.coarsen import settings_of",
         "from regolith_studio.coarsening.weights import LossWeights",
-        "from regolith_studio.harmonics.surface import reconstruct",
+        "from regolith_studio.harmonics.synthesis import reconstruct",
         *(["from regolith_studio.readers.particles import sample_particles"] if sample else []),
         "",
         f"l_max, level = {choices.l_max}, {choices.level}",

@@ -13,7 +13,7 @@ from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.file_names import unique_name
 from regolith_studio.io.json_text import parse_strict_json
-from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices
@@ -35,7 +35,7 @@ from regolith_studio.session.recipe import (
 )
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
-from regolith_studio.shape_models.io import model_bytes
+from regolith_studio.shape_models.models import model_bytes
 from regolith_studio.shape_models.protocol import FittedModel
 
 

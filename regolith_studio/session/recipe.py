@@ -15,7 +15,7 @@ from regolith_studio.errors import FileError, InputError, format_validation_erro
 from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_TABLE_DEGREE
 from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.readers.coefficient_tables import TableConvention
-from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices, Scalar

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from regolith_studio.coarsening.settings import FACETS_LIMITS
-from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import relative_errors
 from regolith_studio.jobs.coarsening_jobs import coarsen_one, compare_with_particle
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one

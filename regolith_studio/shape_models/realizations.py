@@ -14,12 +14,13 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.sphere_grid import expanded_volumes, harmonics, sphere_grid
-from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
 from regolith_studio.harmonics.synthesis import (
+    DEFAULT_LEVEL,
     icosphere_edges,
     radii_along,
     radii_between,
     radii_on_icosphere,
+    reconstruct,
 )
 
 Scale = Literal["radius", "log_radius"]
@@ -113,7 +114,7 @@ class Realizations:
 def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) -> Mesh:
     """Closed mesh of one drawn particle on ``icosphere(level)``, with the volume of its smooth surface.
 
-    The vertices stand out a little, as in :func:`regolith_studio.harmonics.surface.reconstruct`.
+    The vertices stand out a little, as in :func:`regolith_studio.harmonics.synthesis.reconstruct`.
 
     Raises GeometryError if the expansion has a negative radius, which no model of this package draws.
     """

@@ -13,24 +13,24 @@ from regolith_studio.coarsening.settings import DEFAULT_METHOD
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import (
+from regolith_studio.descriptors.describe import (
     N_RESAMPLES,
     band_of,
+    describe,
     pooled_rmsre,
     relative_errors,
     resampled_counts,
 )
-from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.studies import StudyProgress
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants
-from regolith_studio.studies.progress import StudyProgress
 
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""

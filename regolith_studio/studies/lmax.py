@@ -10,17 +10,22 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
-from regolith_studio.descriptors.comparison import N_RESAMPLES, band_of, pooled_rmsre, resampled_counts
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import (
+    N_RESAMPLES,
+    band_of,
+    describe,
+    pooled_rmsre,
+    resampled_counts,
+)
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
-from regolith_studio.harmonics.surface import LEVEL_BY_DEGREE, gallery
+from regolith_studio.harmonics.synthesis import LEVEL_BY_DEGREE, gallery
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.studies.progress import StudyProgress
+from regolith_studio.studies import StudyProgress
 
 DEFAULT_DEGREES = tuple(range(1, 21))
 BOX_NOTE = (

@@ -21,6 +21,7 @@ from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies import StudyProgress
 from regolith_studio.studies.population_distances import (
     Intervals,
     PopulationDistances,
@@ -28,7 +29,6 @@ from regolith_studio.studies.population_distances import (
     intervals,
     paired_columns,
 )
-from regolith_studio.studies.progress import StudyProgress
 
 MESH_LEVEL = 4
 """Icosphere level of the meshes that are measured: 2,562 vertices, and the exact volume of the series."""

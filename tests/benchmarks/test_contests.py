@@ -12,7 +12,7 @@ from benchmarks.plain import by_trimesh
 from benchmarks.steps import polyhedron, stone
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 

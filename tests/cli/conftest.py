@@ -11,7 +11,7 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 
 AXES = {"grain-a": (30.0, 20.0, 15.0), "grain-b": (22.0, 21.0, 20.0), "grain-c": (40.0, 25.0, 12.0)}
 

@@ -11,7 +11,7 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.resources import resource
 from tests.coarsening.compound.unions import dumbbell
 from tests.dataset.example import elbow_entry

@@ -9,7 +9,7 @@ import pytest
 
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 
 from .conftest import ellipsoid
 

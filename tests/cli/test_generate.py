@@ -11,7 +11,7 @@ import trimesh
 from regolith_studio.cli.entry import run
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:

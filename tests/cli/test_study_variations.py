@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from tests.coarsening.compound.unions import dumbbell
 
 ONE = ("--target", "particle", "--json")

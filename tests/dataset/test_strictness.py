@@ -14,7 +14,7 @@ from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 
 
 @pytest.fixture(scope="module")

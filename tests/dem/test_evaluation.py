@@ -15,9 +15,9 @@ from regolith_studio.dem.angle_of_repose import (
     rough_tilt,
     standard_interval,
 )
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.evaluation.profile import Discs, Profile, base_level, connected_tops, project
 from regolith_studio.dem.evaluation.section import Line, NotAPileError, fit_asymmetric, fit_symmetric
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.studies.figures.repose import framed
 from tests.dem.packings import cone, packing

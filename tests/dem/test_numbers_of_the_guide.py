@@ -19,7 +19,7 @@ from regolith_studio.dem.case import ReposeCase, prepare, rayleigh_time, scaling
 from regolith_studio.dem.engine import DEEP_OVERLAP, MAX_DEEP_CONTACTS, MAX_OVERLAP
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.mujoco.simulation import MAX_MOVE, SMALLEST_SHARE
-from regolith_studio.dem.evaluation.settings import MAX_CURVATURE, EvaluationSettings
+from regolith_studio.dem.evaluation import MAX_CURVATURE, EvaluationSettings
 from regolith_studio.dem.verification.bodies import cuboid
 
 ROOT = Path(__file__).parents[2]

@@ -19,7 +19,7 @@ from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engine_process import run_task
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.rapier.simulation import RapierSolver, inner_parallel_body
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.lifting_cylinder import N_WALLS, LiftingSettings, SubstepSettings
 from regolith_studio.dem.run_io import read_run, snapshot_files

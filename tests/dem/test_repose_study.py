@@ -18,7 +18,7 @@ from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import find_runs, save_snapshot
 from regolith_studio.dem.snapshot import ParticleState, Snapshot

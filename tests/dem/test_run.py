@@ -23,7 +23,7 @@ from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engine_process import EngineError
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.run_io import find_runs, read_run, read_shapes, snapshot_files
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, InputError

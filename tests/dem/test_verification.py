@@ -14,12 +14,11 @@ from regolith_studio.dem import shipped_certificates
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.lifting_cylinder import SubstepSettings
-from regolith_studio.dem.verification import scenes
+from regolith_studio.dem.verification import MeasuredLine, scenes
 from regolith_studio.dem.verification.bodies import N_FACETS, polyhedra_dataset
 from regolith_studio.dem.verification.certificate import Certificate, certificate_document, verifiable_engine
 from regolith_studio.dem.verification.dice import CLOSE, LOOSE, platonic_solids
 from regolith_studio.dem.verification.heaps import _paired_line
-from regolith_studio.dem.verification.lines import MeasuredLine
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import result_of

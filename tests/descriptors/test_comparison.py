@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors, rmsre
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import describe, relative_errors, rmsre
 from tests.geometry.solids import cuboid
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
+from regolith_studio.geometry.feret import length_width_thickness
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.geometry.three_chords import length_width_thickness
 from tests.geometry.solids import cuboid, random_polyhedron, rotation
 
 

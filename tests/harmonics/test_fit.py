@@ -12,7 +12,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.star_point import hidden_surface_share
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 
 
 def test_that_a_sphere_has_one_coefficient():

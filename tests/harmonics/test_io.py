@@ -19,7 +19,7 @@ from regolith_studio.harmonics.io import (
     from_complex_rows,
     from_shtools_rows,
 )
-from regolith_studio.harmonics.surface import radii, reconstruct
+from regolith_studio.harmonics.synthesis import radii, reconstruct
 from tests.harmonics.tables import complex_rows, shtools_rows
 
 

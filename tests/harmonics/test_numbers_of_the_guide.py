@@ -7,7 +7,7 @@ import pytest
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.readers.particles import sample_particles
 
 PAGE = " ".join((Path(__file__).parents[2] / "docs/harmonics.md").read_text("utf-8").split())

@@ -13,13 +13,13 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.radius_function import Ellipsoid, is_closed, sample_radius
 from regolith_studio.harmonics.sphere_grid import harmonics
-from regolith_studio.harmonics.surface import (
+from regolith_studio.harmonics.synthesis import (
     enclosed_volume,
     gallery,
+    icosphere_edges,
     radii,
     reconstruct,
 )
-from regolith_studio.harmonics.synthesis import icosphere_edges
 from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid
 
 UNIT_SPHERE = ShCoefficients([np.sqrt(4 * np.pi)])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import RECORD, stl_bytes, stl_triangles
+from regolith_studio.io.triangles import RECORD, stl_bytes, stl_triangles
 
 
 def test_that_stl_bytes_hold_outward_unit_normals_and_the_corners() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.io.tables import Column, Table, csv_text, rows_as_text, write_table
-from regolith_studio.studies.progress import StudyProgress
+from regolith_studio.studies import StudyProgress
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, e
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.jobs.scan_jobs import preview_heights, preview_part, scan_of, segment_volume
-from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.resources import resource
 from tests.jobs.small_jobs import name_and_numbers
 from tests.steps import played

@@ -6,10 +6,10 @@ import pytest
 
 from regolith_studio.errors import FileError, GeometryError, InputError
 from regolith_studio.io.atomic import staged_folder
-from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
-from regolith_studio.readers.units import UNITS, unit_factor
+from regolith_studio.readers.sandbox.parent import sha256_of
+from regolith_studio.readers.settings import UNITS, unit_factor
 
 
 @pytest.fixture

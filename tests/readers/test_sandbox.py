@@ -16,7 +16,7 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
+from regolith_studio.readers.sandbox import SandboxMessage, receive, send
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 
 REPOSITORY = Path(__file__).resolve().parents[2]

@@ -12,13 +12,12 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.harmonics.surface import radii
+from regolith_studio.harmonics.synthesis import radii
 from regolith_studio.io.own_files import arrays_document, arrays_from
 from regolith_studio.readers.shape_files import is_shape_source, radius_of, read_shape_source
 from regolith_studio.session.outputs.measurements import FittedSample, write_fits
-from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import MaterialCard, materials, write_card
-from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.sample import Sample
 
 

@@ -22,7 +22,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase, ShapeKind, prepare
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.run_io import (
     FORMAT,
     case_document,

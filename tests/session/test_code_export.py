@@ -9,7 +9,7 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.resources import SAMPLE, resource
 from regolith_studio.session.choices import Choices

@@ -20,8 +20,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.io.file_names import file_stem
-from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import read_csv
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_sample
 from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput

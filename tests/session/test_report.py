@@ -18,8 +18,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.events import Progress, Steps, result_of
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
@@ -34,11 +34,11 @@ from regolith_studio.session.report.sections import (
     ReportDraft,
     ReportFigure,
     ReportSection,
+    ReportSettings,
     SectionSteps,
     error_table,
     interval_text,
 )
-from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import (
     DOCUMENT,
     MAX_TRIANGLES,
@@ -49,7 +49,7 @@ from regolith_studio.session.report.write import (
     write_report,
 )
 from regolith_studio.settings import settings_of_kind
-from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.figures import write_figure
 
 NUMBERS = Table("Numbers", (Column("name"), Column("length", "um")), (("one", 1.5), ("<two>", None)))
 

@@ -23,7 +23,7 @@ from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import RecipeRun, run_recipe

@@ -15,7 +15,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import ExtractionSettings, SplittingSettings
 from regolith_studio.io.atomic import write_files
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels

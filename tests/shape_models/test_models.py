@@ -12,8 +12,7 @@ import pytest
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.shape_models.io import write_model
-from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
+from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, write_model
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample

@@ -11,7 +11,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import orders
 from regolith_studio.harmonics.sphere_grid import sphere_grid
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
 from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces

@@ -8,7 +8,7 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import ShCoefficients, orders
 from regolith_studio.harmonics.sphere_grid import harmonics, sphere_grid
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
 from regolith_studio.shape_models.mapped_surfaces import mapped_radii, radius_tables

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import pooled_rmsre, rmsre
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import describe, pooled_rmsre, rmsre
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
@@ -19,7 +18,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.fit_options import FitOptions
-from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.studies.figures.degrees import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (

@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from matplotlib import mathtext
 from matplotlib.figure import Figure
-from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.figures import write_figure
 from regolith_studio.ui.widgets import formula
 
 sys.setswitchinterval(5e-4)

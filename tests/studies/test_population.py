@@ -12,6 +12,7 @@ from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.harmonics.io import from_complex_rows
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies import StudyProgress
 from regolith_studio.studies.figures.population import components_figure, write_population_study
 from regolith_studio.studies.population import (
     KEYS,
@@ -28,7 +29,6 @@ from regolith_studio.studies.population_tables import (
     ranking_table,
     target_table,
 )
-from regolith_studio.studies.progress import StudyProgress
 
 SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
 SMALL = {"l_max": 4, "n_draws": 24, "n_splits": 2, "n_repeats": 2, "level": 2}

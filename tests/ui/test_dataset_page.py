@@ -16,7 +16,7 @@ from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.recipe import Exports, Recipe, Representatives, read_recipe
 from regolith_studio.session.run_recipe import run_recipe

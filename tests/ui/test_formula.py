@@ -4,7 +4,7 @@ from threading import Event, Thread
 
 from PySide6.QtTest import QTest
 
-from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
+from regolith_studio.studies.figures import MATPLOTLIB_LOCK
 from regolith_studio.ui.pages.lecture.lessons import PlaybackBar
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 

@@ -28,7 +28,7 @@ from regolith_studio.coarsening.weights import presets
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.ui.dialogs.files import UnitDialog
 from regolith_studio.ui.startup import open_window, show_recovery_and_tour
 

@@ -13,7 +13,7 @@ import tifffile
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from tools.make_samples.grains import AgglutinateRecipe, Recipe, StarRecipe
 from tools.make_samples.strokes import N_STROKES, painted_volume
 from tools.make_samples.synthetic_ct import ScanRecipe, synthetic_scan

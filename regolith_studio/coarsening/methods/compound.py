@@ -22,8 +22,7 @@ from regolith_studio.coarsening.reasons import missed_terms, named_errors
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.descriptors.describe import Descriptors, describe, relative_errors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.half_spaces import HalfSpaces

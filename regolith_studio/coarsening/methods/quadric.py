@@ -11,8 +11,7 @@ from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh

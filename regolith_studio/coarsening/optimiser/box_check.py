@@ -1,6 +1,6 @@
 """The proven minimum box inside compiled code: is any box smaller than the one that is known?
 
-The steps of :func:`regolith_studio.geometry.minimum_box.search.minimum_box` in memory that is made once, with
+The steps of :func:`regolith_studio.geometry.minimum_box.minimum_box` in memory that is made once, with
 the known volume as the first bound: it rules out most pairs of edges at once.
 """
 
@@ -10,6 +10,15 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.minimum_box import (
+    FIRST_FACETS,
+    MANY_FACETS,
+    BestBox,
+    Work,
+    empty_record,
+    search_facets,
+    search_pairs,
+)
 from regolith_studio.geometry.minimum_box.hull_topology import (
     BLOCK,
     QUARTER_TURNS,
@@ -20,15 +29,6 @@ from regolith_studio.geometry.minimum_box.hull_topology import (
     fill_edges_that_may_bound,
     fill_extreme_vertices,
     n_cells,
-)
-from regolith_studio.geometry.minimum_box.search import (
-    FIRST_FACETS,
-    MANY_FACETS,
-    BestBox,
-    Work,
-    empty_record,
-    search_facets,
-    search_pairs,
 )
 from regolith_studio.geometry.vectors import dot, length, mixed, row
 

@@ -38,8 +38,7 @@ from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.descriptors.describe import Descriptors, describe, relative_errors
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron

@@ -8,7 +8,7 @@ from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.messages import N_
 
 _NOTE = b"""templates.asx: one particle_template for each class and size, its share of the mass behind it as a

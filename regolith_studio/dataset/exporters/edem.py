@@ -2,7 +2,7 @@
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.messages import N_
 
 _NOTE = b"""meshes/*.stl are closed, convex, of volume 1, with the centroid at the origin and the principal

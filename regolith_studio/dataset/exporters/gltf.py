@@ -9,7 +9,7 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape
 from regolith_studio.dataset.sampling import pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
-from regolith_studio.io.glb import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes
+from regolith_studio.io.triangles import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes
 from regolith_studio.messages import N_
 
 _NOTE = b"""particles.glb: lengths are in metres, as glTF demands; scale the node 'particles' up to see it.

@@ -5,7 +5,7 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape
 from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.messages import N_
 
 _NOTE = """templates.dat (PFC 6 and later): "geometry import" reads each polyhedron, exactly, as a geometry

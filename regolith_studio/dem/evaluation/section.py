@@ -7,12 +7,12 @@ from typing import Literal
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from regolith_studio.dem.evaluation.profile import Profile
-from regolith_studio.dem.evaluation.settings import (
+from regolith_studio.dem.evaluation import (
     MAX_ANGLE,
     MIN_R_SQUARED,
     EvaluationSettings,
 )
+from regolith_studio.dem.evaluation.profile import Profile
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.messages import N_, Message, Number

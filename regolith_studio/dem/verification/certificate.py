@@ -5,8 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from regolith_studio.dem.engines import ENGINES
-from regolith_studio.dem.verification import dice, heaps, scenes
-from regolith_studio.dem.verification.lines import MeasuredLine, Measurement, VerifiableEngine
+from regolith_studio.dem.verification import MeasuredLine, Measurement, VerifiableEngine, dice, heaps, scenes
 from regolith_studio.errors import InputError, MissingRequirement
 
 SCENES: Mapping[str, Measurement] = {

@@ -15,8 +15,8 @@ from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinde
 from regolith_studio.dem.case import PreparedCase, ReposeCase
 from regolith_studio.dem.heap_packing import within_particles
 from regolith_studio.dem.lifting_cylinder import LiftingRun, fill_cylinder, particles_of
+from regolith_studio.dem.verification import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.dem.verification.bodies import DIAMETER
-from regolith_studio.dem.verification.lines import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.geometry.arrays import FloatArray
 
 GOLDEN = (1 + np.sqrt(5)) / 2

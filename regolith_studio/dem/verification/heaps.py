@@ -26,8 +26,8 @@ from regolith_studio.dem.lifting_cylinder import (
 from regolith_studio.dem.run_io import SNAPSHOTS
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import EngineState
+from regolith_studio.dem.verification import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.dem.verification.bodies import polyhedra_dataset
-from regolith_studio.dem.verification.lines import MeasuredLine, VerifiableEngine, timed
 
 N_PARTICLES, SEEDS = 500, (0, 1, 2, 3, 4)
 AFTER_REST = 100.0

@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.engine import MASS
 from regolith_studio.dem.lifting_cylinder import Solver
+from regolith_studio.dem.verification import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.dem.verification.bodies import cuboid, lowest_heights, random_polyhedron, scene
-from regolith_studio.dem.verification.lines import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.geometry.arrays import FloatArray
 
 FRICTIONS = (0.2, 0.5, 0.8)

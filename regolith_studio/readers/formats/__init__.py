@@ -17,7 +17,7 @@ class ParsedMesh:
     - ``vertices``: shape (n, 3), float64; may hold values that are not finite.
     - ``faces``: shape (m, 3), int64; may point outside the vertices.
     - ``notes``: sentences about parts of the file that were ignored.
-    - ``unit``: a key of ``readers.units.FILE_UNITS``, where the file or its standard states the unit of
+    - ``unit``: a key of ``readers.settings.FILE_UNITS``, where the file or its standard states the unit of
       lengths.
     """
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.io.stl import RECORD
+from regolith_studio.io.triangles import RECORD
 from regolith_studio.readers.error_messages import plural
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 

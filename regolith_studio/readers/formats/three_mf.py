@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
-from regolith_studio.readers.units import unit_named
+from regolith_studio.readers.settings import unit_named
 
 MAX_PART_BYTES = 1 << 29
 """Bytes of one unpacked part; a part that unpacks to more is refused."""

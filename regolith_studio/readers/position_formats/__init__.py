@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import plural, printable
-from regolith_studio.readers.units import UNITS, unit_named
+from regolith_studio.readers.settings import UNITS, unit_named
 from regolith_studio.registry import Registry
 
 Numbers = NDArray[np.float64]
@@ -21,7 +21,7 @@ class ParsedPositions:
 
     - ``points``: shape (n, 3), float64, in `unit`; may hold values that are not finite.
     - ``diameters``: shape (n,) in `diameter_unit`, or None.
-    - ``unit``, ``diameter_unit``: keys of ``readers.units.FILE_UNITS`` where the file names them.
+    - ``unit``, ``diameter_unit``: keys of ``readers.settings.FILE_UNITS`` where the file names them.
     - ``notes``: sentences.
     """
 

@@ -17,8 +17,7 @@ from regolith_studio.errors import RegolithError, os_error_reason
 from regolith_studio.io.child_process import private_pipes
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.formats import MESH_FORMATS
-from regolith_studio.readers.sandbox import tasks
-from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
+from regolith_studio.readers.sandbox import SandboxMessage, receive, send, tasks
 
 Task = Callable[[dict[str, Any]], SandboxMessage]
 

@@ -1,6 +1,7 @@
 """The parent of the sandbox process: starts it, limits it, and replaces it when it ends."""
 
 import contextlib
+import hashlib
 import multiprocessing.util as process_end
 import os
 import signal
@@ -15,7 +16,7 @@ from regolith_studio.errors import FileError, MissingRequirement, RegolithError,
 from regolith_studio.io.child_process import start_module
 from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.readers.error_messages import message_about
-from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
+from regolith_studio.readers.sandbox import SandboxMessage, receive, send
 
 CHILD = "regolith_studio.readers.sandbox.child"
 MAX_FILE_BYTES = 2 * 1024**3
@@ -261,3 +262,25 @@ def shared_sandbox() -> Sandbox:
 def volume_sandbox() -> Sandbox:
     """The sandbox of this process for volumes, separate so that meshes need not wait for them."""
     return _VOLUMES
+
+
+def read_bytes(path: Path, largest: int | None = None) -> bytes:
+    """The bytes of a regular file.
+
+    Raises FileError if there is no such file, it cannot be read, or it is larger than `largest` bytes.
+    """
+    size = checked_size(path)
+    if largest is not None and size > largest:
+        raise FileError(
+            message_about(path, f"has {size / 1e6:.0f} MB; at most {largest / 1e6:.0f} are read.")
+        )
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise FileError(message_about(path, f"cannot be read: {os_error_reason(error)}.")) from None
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of the file's bytes, hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

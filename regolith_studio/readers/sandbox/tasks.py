@@ -23,8 +23,8 @@ from regolith_studio.readers.position_formats import (
     PositionFormat,
     position_suffixes,
 )
-from regolith_studio.readers.sandbox.messages import SandboxMessage
-from regolith_studio.readers.units import UNITS
+from regolith_studio.readers.sandbox import SandboxMessage
+from regolith_studio.readers.settings import UNITS
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, VolumeFormat, volume_suffixes
 from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader, checked_header
 from regolith_studio.readers.voxels.stored import PlainVoxels

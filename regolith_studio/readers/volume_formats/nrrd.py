@@ -11,7 +11,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.number_rows import float_or_nan
-from regolith_studio.readers.units import in_one_unit
+from regolith_studio.readers.settings import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     MIRRORED,

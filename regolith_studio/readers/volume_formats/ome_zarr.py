@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.error_messages import printable
-from regolith_studio.readers.units import in_one_unit
+from regolith_studio.readers.settings import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     MAX_CACHED_BYTES,

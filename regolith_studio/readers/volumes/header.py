@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.readers.error_messages import display_name
 from regolith_studio.readers.sandbox.parent import checked_size
-from regolith_studio.readers.units import unit_factor
+from regolith_studio.readers.settings import unit_factor
 from regolith_studio.readers.voxels.header import DatasetEntry, Kind, Shape, Sizes
 
 VoxelSize = float | Sequence[float]
@@ -67,7 +67,7 @@ class VolumeHeader:
     - ``shape``: voxels along x, y and z.
     - ``dtype``: type of a voxel in memory.
     - ``voxel_size``: edges along x, y and z in `unit`; None where the file does not state it.
-    - ``unit``: key of ``readers.units.UNITS``; None where the file does not state it.
+    - ``unit``: key of ``readers.settings.UNITS``; None where the file does not state it.
     - ``kind``: ``labels`` or ``grey``, as guessed from a few slices; the caller may know better.
     - ``datasets``, ``dataset``: the volumes in the file where it can hold several, and the name of this one.
     - ``bytes``: memory that the whole volume takes.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
-from regolith_studio.readers.units import UNITS, unit_named
+from regolith_studio.readers.settings import UNITS, unit_named
 from regolith_studio.settings import check_settings, setting
 
 if TYPE_CHECKING:  # the command line makes its options of these fields, and must not wait for numerics

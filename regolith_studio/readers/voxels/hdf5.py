@@ -17,7 +17,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.messages import N_
 from regolith_studio.readers.error_messages import printable
-from regolith_studio.readers.units import FILE_UNITS, in_one_unit
+from regolith_studio.readers.settings import FILE_UNITS, in_one_unit
 from regolith_studio.readers.voxels.header import (
     MAX_EDGE,
     VOXEL_TYPES,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
-from regolith_studio.readers.units import in_one_unit
+from regolith_studio.readers.settings import in_one_unit
 
 Shape = tuple[int, int, int]
 Sizes = tuple[float, float, float]
@@ -50,7 +50,7 @@ class VoxelHeader:
     - ``shape``: slices, rows, columns: (nz, ny, nx).
     - ``dtype``: type of the voxels in memory, in native byte order.
     - ``voxel_size``: edges along x, y and z, in `unit`; None where the file does not state it.
-    - ``unit``: a key of ``readers.units.UNITS``; None where the file does not state it.
+    - ``unit``: a key of ``readers.settings.UNITS``; None where the file does not state it.
     - ``kind``: where the file itself states it.
     - ``notes``: sentences for the user.
     - ``datasets``, ``dataset``: the arrays that the file offers, and the name of the one that this is.

@@ -10,7 +10,7 @@ from typing import Any, Protocol, Self
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.surface import level_for
+from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.io.file_names import name_key, unique_name
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.executor import open_executor

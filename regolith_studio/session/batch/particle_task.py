@@ -16,7 +16,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.io import fits_document
 from regolith_studio.io.checkpoint import CheckpointRecord
-from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import call

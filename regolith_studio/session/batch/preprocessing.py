@@ -37,15 +37,15 @@ from regolith_studio.jobs.extraction_settings import (
 )
 from regolith_studio.jobs.model_jobs import GenerationRequest, fit_model, fit_request_for, sample_of_meshes
 from regolith_studio.jobs.particle_jobs import load_particles
-from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.particles import FileProblem, find_files
+from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.outputs.particles import RECIPE, recipe_document
 from regolith_studio.session.recipe import Population, RawVolume, Recipe, VolumeEntry
-from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.models import write_model
 
 INDEX = "grains.json"
 MODEL = "model.json"

@@ -10,8 +10,7 @@ from matplotlib.image import imread
 
 from regolith_studio.io.tables import Table, rows_as_text
 from regolith_studio.session.report.sections import TITLE, ReportFigure, ReportSection
-from regolith_studio.studies.figures.files import DOTS_PER_INCH
-from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
+from regolith_studio.studies.figures import DOTS_PER_INCH, MATPLOTLIB_LOCK
 
 PAGE = (8.27, 11.69)
 """A4 in inches."""

@@ -8,7 +8,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
-from regolith_studio.harmonics.surface import gallery
+from regolith_studio.harmonics.synthesis import gallery
 from regolith_studio.io.tables import Column, Table, write_table
 from regolith_studio.jobs.model_jobs import sample_of_meshes
 from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample

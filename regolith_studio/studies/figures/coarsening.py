@@ -20,7 +20,7 @@ from regolith_studio.studies.coarsening import (
     particle_table,
     rmsre_table,
 )
-from regolith_studio.studies.figures.files import as_written, with_subscript, write_figure
+from regolith_studio.studies.figures import as_written, with_subscript, write_figure
 from regolith_studio.studies.sweeps import (
     SWEEPS,
     descriptor_error,

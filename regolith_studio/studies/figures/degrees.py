@@ -21,7 +21,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.tables import write_table
-from regolith_studio.studies.figures.files import as_written, with_subscript, write_figure
+from regolith_studio.studies.figures import as_written, with_subscript, write_figure
 from regolith_studio.studies.lmax import BOX_NOTE, LmaxStudy, particle_table, rmsre_table
 from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy, gallery_table
 

@@ -13,7 +13,9 @@ from matplotlib.ticker import MaxNLocator
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import write_table
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.figures import as_written, write_figure
+from regolith_studio.studies.matching import QUANTILES as MATCHED_QUANTILES
+from regolith_studio.studies.matching import Match
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
 from regolith_studio.studies.population_tables import (
@@ -182,3 +184,28 @@ def _label(study: PopulationStudy, column: int) -> str:
     power = {1: "", 2: "²", 3: "³", 5: "⁵"}
     suffix = f" ({unit}{power[row.dimension]})" if row.dimension else ""
     return f"{row.label.lower()}{suffix}"
+
+
+def matching_figure(found: Match) -> Figure:
+    """Energy distances in floors, masses of the mixture, and quantiles of the size by mass."""
+    parts = (*found.parts, found.mixture)
+    rows, names = np.arange(len(parts)), [as_written(part.name) for part in parts]
+    figure = Figure(figsize=(11, 1.8 + 0.35 * len(parts)), layout="constrained")
+    near, masses, sizes = figure.subplots(1, 3, sharey=True)
+    for row, part in zip(rows, parts, strict=True):
+        low, high = (end / part.energy_floor for end in part.energy_interval)
+        near.plot([low, high], [row, row], color="#0072b2")
+        near.plot(part.energy / part.energy_floor, row, "o", color="#0072b2")
+        sizes.plot(part.sizes, [row] * len(MATCHED_QUANTILES), "o-", color="#009e73")
+        if part is not found.mixture:
+            masses.barh(row, 100 * part.mass_share, color="#e69f00")
+            masses.plot([100 * end for end in part.mass_interval], [row, row], color="black")
+    near.axvspan(-1, 1, color="#e4e4e4")
+    near.set_xlabel(f"energy distance to {as_written(found.target)}, in floors")
+    masses.set_xlabel("mass in the mixture, %")
+    for size in found.target_sizes:
+        sizes.axvline(size, color="#888888", linestyle=":")
+    sizes.set(xscale="log", xlabel=f"{found.keys[0]}, um: 10, 50, 90 % of the mass".replace("%", r"\%"))
+    near.set_yticks(rows, names)
+    near.invert_yaxis()
+    return figure

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.particles import has_tables
-from regolith_studio.readers.units import UNITS, unit_factor
+from regolith_studio.readers.settings import UNITS, unit_factor
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fields import DecimalField

@@ -13,7 +13,7 @@ from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
+from regolith_studio.studies.figures import MATPLOTLIB_LOCK
 
 EM = 100.0
 """Font size of the outlines, which are scaled when drawn."""

@@ -13,8 +13,7 @@ from regolith_studio.coarsening.optimiser.compound_starts import shared_out
 from regolith_studio.coarsening.stopping_criteria import coarsen_below
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron

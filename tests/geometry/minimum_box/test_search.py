@@ -5,6 +5,7 @@ import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.minimum_box import empty_record, min_on_curve
 from regolith_studio.geometry.minimum_box.edge_pair import (
     Curve,
     Quartic,
@@ -31,7 +32,6 @@ from regolith_studio.geometry.minimum_box.hull_topology import (
     span_near,
     span_table,
 )
-from regolith_studio.geometry.minimum_box.search import empty_record, min_on_curve
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import random_polyhedron

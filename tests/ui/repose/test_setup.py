@@ -8,7 +8,7 @@ import pytest
 
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import check_number
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.mesh import Mesh

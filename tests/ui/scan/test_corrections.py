@@ -14,7 +14,7 @@ from regolith_studio.jobs.extraction_settings import (
     read_grain_settings,
     read_objects,
 )
-from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.readers.volumes.read import read_volume
 from tests.ui.scan.mouse import click_voxel, paint, press
 

@@ -12,7 +12,7 @@ from regolith_studio.jobs.extraction_settings import (
     VolumeInput,
     read_classifier,
 )
-from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.sandbox.parent import sha256_of
 from tests.ui.scan.mouse import paint, press
 
 SECONDS = 120.0

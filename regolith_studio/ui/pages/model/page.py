@@ -32,9 +32,8 @@ from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
 from regolith_studio.session.session import Session
-from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import MaterialCard, materials, write_card
-from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs

@@ -24,7 +24,7 @@ from regolith_studio.io.json_text import json_bytes
 from regolith_studio.messages import N_
 from regolith_studio.readers.position_formats import named_columns
 from regolith_studio.readers.positions import ParticlePositions, asks_for_columns, read_positions
-from regolith_studio.readers.units import unit_factor
+from regolith_studio.readers.settings import unit_factor
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
 from regolith_studio.ui.translation import tr

@@ -29,7 +29,7 @@ from regolith_studio.dataset.parameters import (
 from regolith_studio.dem.angle_of_repose import RELIABLE_N
 from regolith_studio.dem.case import ReposeCase
 from regolith_studio.dem.engines import CAPABILITY_LABELS, ENGINES, engine_named, engine_rows
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.runners.process_pool import cores
