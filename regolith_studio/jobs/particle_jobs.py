@@ -263,6 +263,8 @@ _NEARLY = 0.8
 CHECKED = (*LOSS_KEYS, "convexity", "elongation", "flatness")
 _DEGREES = (10, 15, 20, 30, 40)
 """Degrees that are tried."""
+_NAMED = 3
+"""Descriptors that are named, the worst ones."""
 _SMOOTH_DEGREE, _LEVELS = 10, (3, 4)
 """Levels of the surfaces that are measured, up to this degree and above: fine enough for the tolerance.
 The box of a smooth surface takes twenty times as long at the next level."""
@@ -295,10 +297,12 @@ def check_fit(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> Steps:
         Message(
             "{label} {error} %", label=Message(CATALOGUE[key].label), error=Number(100 * errors[key], ".0f")
         )
-        for key in far
+        for key in far[:_NAMED]
     ]
+    if len(far) > _NAMED:
+        parts.append(Message(N_("{count} more"), count=len(far) - _NAMED))
     return Message(
-        N_("The fit up to l = {degree} is off by more than {limit} % in {descriptors}; {remedy}"),
+        N_("At l = {degree} off by more than {limit} %: {descriptors}; {remedy}"),
         degree=fit.l_max,
         limit=Number(100 * TOLERANCE, ".0f"),
         descriptors=join_messages(parts, ", "),

@@ -249,9 +249,9 @@ def rmsre_table(study: CoarseningStudy) -> Table:
 def particle_table(study: CoarseningStudy) -> Table:
     """Relative error of every descriptor of every particle in every row."""
     lines = [
-        (name, row.label, row.method_run, row.n_facets, *study.errors[i, r])
+        (name, row.label, row.method_run, row.n_facets, *(100 * study.errors[i, r]))
         for i, name in enumerate(study.names)
         for r, row in enumerate(study.rows)
     ]
-    columns = (*map(Column, ("name", "row", "method", "facets")), *map(Column, COLUMNS))
+    columns = (*map(Column, ("name", "row", "method", "facets")), *(Column(key, "%") for key in COLUMNS))
     return Table("Relative errors of every coarsened particle", columns, tuple(lines))

@@ -728,6 +728,10 @@
         <translation>Angenommen: {facts}.</translation>
     </message>
     <message>
+        <source>At l = {degree} off by more than {limit} %: {descriptors}; {remedy}</source>
+        <translation>Bei l = {degree} um mehr als {limit} % daneben: {descriptors}; {remedy}</translation>
+    </message>
+    <message>
         <source>At most</source>
         <translation>Höchstens</translation>
     </message>
@@ -5256,6 +5260,10 @@
         <translation>Das ganze Partikel zeigen</translation>
     </message>
     <message>
+        <source>Show the whole text</source>
+        <translation>Den ganzen Text zeigen</translation>
+    </message>
+    <message>
         <source>Show triangles</source>
         <translation>Dreiecke zeigen</translation>
     </message>
@@ -5946,10 +5954,6 @@
     <message>
         <source>The filling will be about {height} cm high (the paper: 2.5 to 3 cm).</source>
         <translation>Die Füllung wird etwa {height} cm hoch (im Artikel: 2,5 bis 3 cm).</translation>
-    </message>
-    <message>
-        <source>The fit up to l = {degree} is off by more than {limit} % in {descriptors}; {remedy}</source>
-        <translation>Die Anpassung bis l = {degree} weicht um mehr als {limit} % ab: {descriptors}; {remedy}</translation>
     </message>
     <message>
         <source>The folder contains an unfinished run: resume it, or choose another folder.</source>
@@ -8470,6 +8474,10 @@
     <message>
         <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, evaluated on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
         <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, ausgewertet an der anderen; {splits} {split}, je Anpassung {repeats} Mal {draws} gezogen, Startwert {seed}.</translation>
+    </message>
+    <message>
+        <source>{count} more</source>
+        <translation>{count} weitere</translation>
     </message>
     <message>
         <source>{count} needed</source>

@@ -27,7 +27,7 @@ def sentence(mesh: Mesh, l_max: int) -> str:
 def test_that_a_fit_without_the_waves_of_its_grain_names_the_degree_that_has_them() -> None:
     assert TOLERANCE == 0.05
     said = sentence(bumpy(0.2, 12), 10)
-    assert re.match(r"The fit up to l = 10 is off by more than 5 % in .*Sphericity \d+ %", said)
+    assert re.match(r"At l = 10 off by more than 5 %: Sphericity \d+ %, ", said)
     assert said.endswith("; l_max 15 would do.")
 
 

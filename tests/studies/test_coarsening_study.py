@@ -102,7 +102,9 @@ def test_that_the_band_holds_the_value(study: CoarseningStudy) -> None:
 def test_that_tables_and_figures_are_written(study: CoarseningStudy, tmp_path: Path) -> None:
     table = rmsre_table(study)
     assert len(table.rows) == len(ROWS) * len(COLUMNS)
-    assert len(particle_table(study).rows) == 4
+    particles = particle_table(study)
+    assert np.allclose([row[4:] for row in particles.rows], 100 * study.errors.reshape(4, -1))
+    assert {column.unit for column in particles.columns[4:]} == {"%"}
     paths = write_coarsening_study(study, tmp_path)
     assert {path.name for path in paths} >= {"coarsening_rmsre.csv", "coarsening_rmsre.png"}
     assert all(path.stat().st_size > 0 for path in paths)
@@ -112,6 +114,7 @@ def test_that_symbols_have_real_subscripts_in_figures(study: CoarseningStudy) ->
     marks = [label.get_text() for label in coarsening_figure(study).axes[0].get_xticklabels()]
     assert r"D$_\mathrm{min}$" in marks
     assert not any(re.search(r"\w_", mark) for mark in marks)
+    assert marks[-1] == "J"
 
 
 def test_that_a_study_travels_between_processes(study: CoarseningStudy) -> None:

@@ -70,7 +70,7 @@ def test_that_the_overlap_that_descriptors_cost_is_told_beside_the_choices(windo
 def test_that_a_fit_far_from_its_particle_says_so_and_no_longer_once_another_is_shown(window, wait):
     window.session.choose(l_max=2)
     warnings = window.page.fit.warnings
-    wait(lambda: "The fit up to l = 2 is off by more than 5 % in" in warnings.text(), SECONDS)
+    wait(lambda: "At l = 2 off by more than 5 %: " in warnings.text(), SECONDS)
     assert "would do." in warnings.text()
     window.session.choose(l_max=3)
     wait(lambda: "up to l = 2" not in warnings.text(), SECONDS)

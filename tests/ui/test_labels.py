@@ -3,7 +3,7 @@
 import pytest
 from PySide6.QtCore import QPoint, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QDialog, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QLabel, QVBoxLayout, QWhatsThis, QWidget
 
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
@@ -11,8 +11,10 @@ from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.widgets.labels import (
     CITATION,
+    FixedHeightText,
     WrappedLabel,
     heading,
+    hint_label,
     with_citations,
     with_subscripts,
 )
@@ -83,3 +85,18 @@ def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferenc
     dialog = window.findChild(QDialog, "about_dialog")
     assert any("Geometry-Preserving" in each.text() for each in dialog.findChildren(QLabel))
     dialog.close()
+
+
+def test_that_a_note_longer_than_its_place_is_shown_in_full_by_a_button_and_scrolls_nothing(shown, app, wait):
+    text = hint_label("Short.")
+    note = shown(FixedHeightText((text,), 2))
+    note.resize(200, note.sizeHint().height())
+    app.processEvents()
+    assert not note.more.isVisible()
+    text.setText("A sentence with a number at its end. " * 8 + "See Eq. 9.")
+    wait(note.more.isVisible)
+    assert not note.verticalScrollBar().isVisible()
+    note.more.click()
+    popup = next(each for each in app.topLevelWidgets() if each.metaObject().className() == "QWhatsThat")
+    assert popup.width() > 100
+    QWhatsThis.hideText()

@@ -91,11 +91,7 @@ def compare_losses(draft: ReportDraft, title: str) -> SectionSteps:
             *([f"Requests that could not be met exactly, by loss: {unmet}."] if unmet else []),
             *(f"{name} was left out: {reason}" for name, reason in study.failures),
         ),
-        (
-            ReportFigure(
-                png_of(files, "coarsening_rmsre"), "RMSRE in percent for each set of weights; IoU is J."
-            ),
-        ),
+        (ReportFigure(png_of(files, "coarsening_rmsre"), "RMSRE in percent for each set of weights."),),
         (table,),
     )
 

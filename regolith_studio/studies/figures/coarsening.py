@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
-from matplotlib.colors import TwoSlopeNorm
+from matplotlib.colors import LinearSegmentedColormap, PowerNorm, TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS
@@ -98,31 +98,37 @@ def sensitivity_figure(study: CoarseningStudy) -> Figure:
     return figure
 
 
-PAPER_SYMBOLS = {JACCARD: "IoU"}
+ERRORS = LinearSegmentedColormap.from_list("errors", ["#ffffff", "#ecb73f"])
+"""White for no error to the colour of polyhedra for the largest, by the root, as the table of the window."""
 
 
 def coarsening_figure(study: CoarseningStudy) -> Figure:
     """Rows of weights against descriptors; the number in a cell is the RMSRE in percent."""
     values = 100 * study.rmsre
     n_rows = len(study.rows)
-    figure = Figure(figsize=(9.0, 1.6 + 0.55 * n_rows), layout="constrained")
+    figure = Figure(figsize=(9.0, 1.9 + 0.55 * n_rows), layout="constrained")
+    figure.suptitle(_made_with(study), fontsize="medium")
     axis = figure.subplots()
-    image = axis.imshow(
-        np.log10(np.maximum(values, MIN_PLOTTED)), aspect="auto", cmap="viridis", vmin=-3, vmax=2
-    )
+    norm = PowerNorm(0.5, 0.0, max(float(np.nanmax(values, initial=0.0)), MIN_PLOTTED))
+    image = axis.imshow(values, aspect="auto", cmap=ERRORS, norm=norm)
     for r in range(n_rows):
         for k in range(len(COLUMNS)):
-            dark = np.log10(max(values[r, k], MIN_PLOTTED)) < 0.5
-            axis.text(
-                k, r, _printed(values[r, k]), ha="center", va="center", color="white" if dark else "black"
-            )
+            axis.text(k, r, _printed(values[r, k]), ha="center", va="center")
     axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
     axis.set_yticks(range(n_rows), [_described(study, r) for r in range(n_rows)])
     axis.xaxis.tick_top()
-    bar = figure.colorbar(image, ax=axis, ticks=[-3, -2, -1, 0, 1, 2])
-    bar.ax.set_yticklabels(["≤0.001", "0.01", "0.1", "1", "10", "100"])
-    bar.set_label("RMSRE (%); IoU: mean Jaccard distance (%)")
+    figure.colorbar(image, ax=axis).set_label("RMSRE (%); J: mean Jaccard distance (%)")
     return figure
+
+
+def _made_with(study: CoarseningStudy) -> str:
+    """What all rows have in common: particles, and method and facets where they are the same."""
+    methods = {row.method_run for row in study.rows if not row.is_baseline}
+    facets = {row.n_facets for row in study.rows}
+    words = [f"{len(study.names)} particles"]
+    words += [f"method {key}" for key in methods if len(methods) == 1]
+    words += [f"{count} facets" for count in facets if len(facets) == 1]
+    return ", ".join(words)
 
 
 def facet_count_figure(study: CoarseningStudy) -> Figure:
@@ -148,7 +154,7 @@ def facet_count_figure(study: CoarseningStudy) -> Figure:
         )
     axis.set_yscale("log")
     axis.set_xlabel("facets")
-    axis.set_ylabel(f"RMSRE (%), at least {MIN_PLOTTED:g}; IoU: mean (%)")
+    axis.set_ylabel(f"RMSRE (%), at least {MIN_PLOTTED:g}; J: mean (%)")
     axis.grid(True, which="major", alpha=0.3)
     figure.legend(loc="outside right upper", frameon=False)
     return figure
@@ -186,8 +192,8 @@ def write_coarsening_study(
 
 
 def column_symbol(key: str) -> str:
-    """Of a descriptor, or IoU as the paper has it, as matplotlib sets it."""
-    return PAPER_SYMBOLS.get(key) or with_subscript(CATALOGUE[key].symbol)
+    """Of a descriptor, or J of the Jaccard distance (the paper's IoU), as matplotlib sets it."""
+    return "J" if key == JACCARD else with_subscript(CATALOGUE[key].symbol)
 
 
 def _described(study: CoarseningStudy, r: int) -> str:
@@ -197,4 +203,4 @@ def _described(study: CoarseningStudy, r: int) -> str:
 
 
 def _printed(value: float) -> str:
-    return "0" if value < 5e-5 else f"{value:.2g}"
+    return "0" if value < 5e-3 else f"{value:.2f}" if value < 1.0 else f"{value:.1f}"

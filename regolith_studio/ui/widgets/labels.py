@@ -5,8 +5,8 @@ import re
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QLocale, QSize, Qt
-from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
 from regolith_studio.ui.translation import Markup, inert, localized, number_text, rich, tr
 
@@ -103,14 +103,16 @@ NOTE_LINES = 2
 class FixedHeightText(QScrollArea):
     """Labels with the height of a fixed number of lines, so that the controls below do not move.
 
-    ``texts``: from top to bottom; hidden ones take no space. Longer ones are scrolled. ``lines``: visible at
-    once; ``least``: the same where the window has no room for more.
+    ``texts``: from top to bottom; hidden ones take no space. A button shows longer ones in full: a bar to
+    scroll within a column that scrolls would take its wheel. ``lines``: visible at once; ``least``: the same
+    where the window has no room for more.
     """
 
     def __init__(self, texts: Sequence[QLabel], lines: int = NOTE_LINES, least: int = 0) -> None:
         super().__init__()
         self._lines, self._least, self._inside = lines, least or lines, QWidget()
-        inside = self._inside
+        self._texts, inside = tuple(texts), self._inside
+        self.more = QToolButton(self)
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -121,12 +123,35 @@ class FixedHeightText(QScrollArea):
         self.setProperty("role", "texts")
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAccessibleName(tr("Remarks"))
+        self.more.setText("…")
+        self.more.setAutoFillBackground(True)
+        self.more.setAccessibleName(tr("Show the whole text"))
+        self.more.setToolTip(tr("Show the whole text"))
+        self.more.hide()
+        self.more.clicked.connect(self.show_whole)
+        self.verticalScrollBar().rangeChanged.connect(lambda _least, most: self.more.setVisible(most > 0))
         self.setWidget(inside)
         for part in (self.viewport(), inside):
             part.setAutoFillBackground(False)  # shows what is behind, which is lighter in tabs
+
+    def show_whole(self) -> None:
+        """Show the texts in full below their place, until something is clicked or typed."""
+        words = [text.text() for text in self._texts if not text.isHidden()]
+        shown = "<br>".join(each if _TAG.search(each) else rich(each) for each in words)
+        QWhatsThis.showText(self.mapToGlobal(self.rect().bottomLeft()), shown, self)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.more.setFixedHeight(self.fontMetrics().lineSpacing())
+        size = self.more.sizeHint()
+        self.more.move(self.width() - size.width(), self.height() - self.more.height() - self.frameWidth())
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        event.ignore()  # it is for the column around
 
     def sizeHint(self) -> QSize:
         return QSize(super().sizeHint().width(), self._height(self._lines))

@@ -294,8 +294,8 @@ class LossPanel(QWidget):
             else tr(preset.origin) + "."
         )
         weights = self.value()["weights"]
-        kept = translate(kept_sentence(weights)) if self._keeps_terms else ""
-        self.origin.setText(f"{origin} {kept}".rstrip())
+        self.origin.setText(origin)
+        self.origin.setToolTip(inert(translate(kept_sentence(weights))) if self._keeps_terms else "")
         for key, lock in self.locks.items():
             lock.setChecked(self._keeps_terms and key in weights.kept)
 
