@@ -110,7 +110,7 @@ Filling = Annotated[
     ),
 ]
 Bond = Annotated[
-    float | None,
+    float,
     typer.Option(
         "--bond",
         min=0.0,
@@ -244,7 +244,7 @@ def run(
     cohesion: Annotated[
         str, typer.Option("--cohesion", help="Cohesion: none, given or scaled.", metavar="C")
     ] = "none",
-    bond: Bond = None,
+    bond: Bond = 0.0,
     filling: Filling = None,
     overwrite: Overwrite = False,
     json: Json = False,
@@ -257,11 +257,10 @@ def run(
         coarse_graining=coarse_graining,
         shapes="spheres" if spheres else "polyhedra",
         cohesion=cohesion,
+        bond_number=bond,
         seed=seed,
     )
-    if bond is not None and cohesion != "none":
-        raise typer.BadParameter("Give either --bond or --cohesion.")
-    done = _simulate(dataset, output, request, bond, filling, overwrite, jobs)
+    done = _simulate(dataset, output, request, filling, overwrite, jobs)
     if json:
         print_json(done.document)
     else:
@@ -317,7 +316,7 @@ def drum(
     how: DrumOptions,
     coarse_graining: CoarseGraining = 0.0,
     spheres: Spheres = False,
-    bond: Bond = None,
+    bond: Bond = 0.0,
     filling: Filling = None,
     overwrite: Overwrite = False,
     json: Json = False,
@@ -337,13 +336,14 @@ def drum(
         n_particles=particles,
         coarse_graining=coarse_graining,
         shapes="spheres" if spheres else "polyhedra",
+        bond_number=bond,
         seed=seed,
     )
     if froude is not None:
         with usage_errors():
             turning = DrumRotation(rpm_of(froude, request.case.test), turns, moments)
         request = replace(request, case=replace(request.case, drum=turning))
-    done = _simulate(dataset, output, request, bond, filling, overwrite, jobs)
+    done = _simulate(dataset, output, request, filling, overwrite, jobs)
     document, found = dict(done.document), done.measurement
     if measured is not None and isinstance(found, DrumMeasurement):
         document["measured"] = compare_angles(found, measured, measured_error)
@@ -361,7 +361,6 @@ def _simulate(
     dataset: Path,
     output: Path,
     request: "ReposeRequest",
-    bond: float | None,
     filling: Path | None,
     overwrite: bool,
     jobs: int,
@@ -369,22 +368,16 @@ def _simulate(
     """Run a case, with its notes before and after."""
     from dataclasses import replace
 
-    from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
-    from regolith_studio.dem.case import prepare, scaling_report, with_bond_number
-    from regolith_studio.dem.run_io import with_filling
-    from regolith_studio.jobs.repose_jobs import simulate_prepared
+    from regolith_studio.dem.case import scaling_report
+    from regolith_studio.jobs.repose_jobs import prepared_case, simulate_prepared
     from regolith_studio.jobs.runners.process_pool import cores
 
-    prepared = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
-    if bond is not None:
-        prepared = with_bond_number(prepared, bond)
-    print_errors(scaling_report(prepared).sentences)
-    if filling is not None:
-        prepared, notes = with_filling(prepared, filling)
-        print_errors(notes)
+    prepared = prepared_case(dataset, request.case, filling)
+    before = [*scaling_report(prepared).sentences, *prepared.filling_notes]
+    print_errors(before)
     request = replace(request, overwrite=overwrite, threads=jobs or cores())
     done: ReposeRun = run_with_progress(simulate_prepared(prepared, output, request))
-    print_errors(run_notes(done.document))
+    print_errors(note for note in run_notes(done.document) if note not in before)
     return done
 
 
@@ -414,6 +407,13 @@ def study(
             metavar="KEYS",
         ),
     ] = "",
+    same_filling: Annotated[
+        bool,
+        typer.Option(
+            "--same-filling",
+            help="Fill the cylinder once for each seed, with the first value; lift it again with the others.",
+        ),
+    ] = False,
     particles: Particles = 1000,
     how: CaseOptions,
     runner: Runner = "processes",
@@ -448,7 +448,8 @@ def study(
         if not points:
             rows.append(ReposeVariant(name, folder.name, folder, request))
     with chosen_executor(runner, jobs, address, tls) as executor:
-        done = run_with_progress(study_repose(rows, output, repeats, executor))
+        done = run_with_progress(study_repose(rows, output, repeats, executor, same_filling))
+    print_errors(dict.fromkeys(note for each in done.runs for note in each.document["filling"]["notes"]))
     try:
         surface = fit_repose_surface(done, statistics, keys) if keys else None
     except InputError:

@@ -29,6 +29,7 @@ MIN_DIAMETERS_ACROSS = 3.0
 """Minimum diameter of the cylinder in mean particle diameters."""
 MIN_DRUM_SHARE, MAX_DRUM_SHARE = 0.1, 0.7
 """Part of a drum's volume that its filling takes."""
+MAX_BOND_NUMBER = 10_000
 SOLID_FRACTION = 0.55
 """Estimate for a settled filling, before a run."""
 
@@ -53,6 +54,9 @@ class ReposeCase:
     cohesion
         ``none``; the surface energy as ``given``; or ``scaled`` by the square of the coarse graining
         (relative to the paper's factor 10), which keeps the ratio of cohesion to weight.
+    bond_number
+        Pull-off force of two mean simulated particles over the weight of one, in place of the surface energy;
+        0: `cohesion` says it.
     seed
         Of sizes, shapes, positions and orientations.
     drum
@@ -70,6 +74,7 @@ class ReposeCase:
     coarse_graining: float = 0.0
     shapes: ShapeKind = "polyhedra"
     cohesion: CohesionKind = "none"
+    bond_number: float = 0.0
     seed: int = 0
     drum: DrumRotation | None = None
 
@@ -93,6 +98,17 @@ class ReposeCase:
             raise InputError(f"Shapes are polyhedra or spheres, got {self.shapes!r}.")
         if self.cohesion not in ("none", "given", "scaled"):
             raise InputError(f"Cohesion is none, given or scaled, got {self.cohesion!r}.")
+        if not 0.0 <= self.bond_number <= MAX_BOND_NUMBER:
+            raise InputError(
+                f"The Bond number must lie between 0 and {MAX_BOND_NUMBER:,}, got {self.bond_number:g}."
+            )
+        if self.bond_number > 0.0 and self.cohesion != "none":
+            raise InputError(f"Give either a Bond number or cohesion {self.cohesion}.")
+
+    @property
+    def is_cohesive(self) -> bool:
+        """Whether particles attract each other."""
+        return self.bond_number > 0.0 or (self.cohesion != "none" and self.contact.surface_energy > 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +128,7 @@ class PreparedCase:
       convex.
     - ``filling``: the same particles at rest in the cylinder, from an earlier run; without it the cylinder
       is filled.
+    - ``filling_notes``: sentences on what the filling remembers of that run and the case has not.
     """
 
     case: ReposeCase
@@ -125,6 +142,7 @@ class PreparedCase:
     parts: tuple[tuple[int, ...], ...] = ()
     inertias: tuple[FloatArray, ...] = ()
     filling: ParticleState | None = None
+    filling_notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.diameters)
@@ -145,6 +163,7 @@ class PreparedCase:
             self.parts,
             self.inertias,
             self.filling,
+            self.filling_notes,
         )
 
     def __len__(self) -> int:
@@ -183,9 +202,14 @@ class PreparedCase:
         return float(np.array(self.n_facets)[self.class_index].mean())
 
     @property
+    def are_compounds(self) -> bool:
+        """Whether particles of several convex parts are simulated."""
+        return bool(self.parts) and self.case.shapes == "polyhedra"
+
+    @property
     def further_parts(self) -> float:
         """Mean number of convex parts of a particle besides its first one; 0 for spheres."""
-        if not self.parts or self.case.shapes == "spheres":
+        if not self.are_compounds:
             return 0.0
         return float(np.array([len(counts) for counts in self.parts])[self.class_index].mean()) - 1.0
 
@@ -198,7 +222,11 @@ class PreparedCase:
     @property
     def surface_energy(self) -> float:
         """Simulated surface energy in J/m^2."""
-        given = self.case.contact.surface_energy
+        contact = self.case.contact
+        if self.case.bond_number > 0.0:
+            gravity = self.case.test.gravity
+            return self.case.bond_number / bond_number(1.0, self.mean_diameter, contact.density, gravity)
+        given = contact.surface_energy
         ratio = self.coarse_graining / PAPER_COARSE_GRAINING
         return {"none": 0.0, "given": given, "scaled": given * ratio**2}[self.case.cohesion]
 
@@ -305,14 +333,6 @@ def pull_off_force(surface_energy: float, diameter: float) -> float:
 def bond_number(surface_energy: float, diameter: float, density: float, gravity: float) -> float:
     """Ratio of the pull-off force of two equal spheres and the weight of one."""
     return pull_off_force(surface_energy, diameter) / (density * np.pi / 6 * diameter**3 * gravity)
-
-
-def with_bond_number(prepared: PreparedCase, bond: float) -> PreparedCase:
-    """The case with the surface energy at which two mean simulated particles have this Bond number."""
-    contact, test = prepared.case.contact, prepared.case.test
-    energy = bond / bond_number(1.0, prepared.mean_diameter, contact.density, test.gravity)
-    contact = replace(contact, surface_energy=energy)
-    return replace(prepared, case=replace(prepared.case, contact=contact, cohesion="given"))
 
 
 def rayleigh_time(diameter: float, density: float, youngs_modulus: float, poissons_ratio: float) -> float:

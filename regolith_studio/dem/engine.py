@@ -20,8 +20,8 @@ ENGINE_THREADS = "RAYON_NUM_THREADS"
 class EngineCapabilities:
     """How an engine implements the contact model of Table 1, in phrases for the table of engines.
 
-    `compounds` says how it simulates particles of several convex parts, `drum` how it turns a drum; empty if
-    it does not.
+    `compounds` says how it simulates particles of several convex parts, `drum` how it turns a drum; these,
+    `cohesion` and `rolling` are empty if it does not.
     """
 
     shape: str
@@ -117,6 +117,18 @@ class Engine(Protocol):
 
     def simulate(self, prepared: PreparedCase, settings: Any) -> Generator[Snapshot, None, SimulationResult]:
         """Run in this process; yields snapshots in the order of time."""
+        ...
+
+
+@runtime_checkable
+class CheckedEngine(Protocol):
+    """An engine that represents less than its capabilities say."""
+
+    def check(self, prepared: PreparedCase) -> None:
+        """Check a case before it is run.
+
+        Raises InputError if the engine does not represent it.
+        """
         ...
 
 

@@ -157,7 +157,7 @@ def run_key(prepared: PreparedCase, engine: Engine, settings: Any) -> str:
         "parts": [list(counts) for counts in prepared.parts],
         "engine": [engine.key, engine.find().version, asdict(settings)],
         "coarse_graining": prepared.coarse_graining,
-        "filling": filling_hash(prepared),
+        "filling": filling_hash(prepared.filling),
     }
     digest = hashlib.sha256(canonical_json(document).encode("utf-8"))
     for array in (prepared.diameters, prepared.class_index, *prepared.shapes):
@@ -165,31 +165,33 @@ def run_key(prepared: PreparedCase, engine: Engine, settings: Any) -> str:
     return digest.hexdigest()
 
 
-def filling_hash(prepared: PreparedCase) -> str | None:
-    """SHA-256 of the filling that a case begins with, as hexadecimal; ``None`` where the run fills it."""
-    if prepared.filling is None:
-        return None
-    return hashlib.sha256(particle_state_bytes(prepared.filling)).hexdigest()
+def filling_hash(filling: ParticleState | None) -> str | None:
+    """SHA-256 of the filling that a run begins with, as hexadecimal; ``None`` where it fills the cylinder."""
+    return None if filling is None else hashlib.sha256(particle_state_bytes(filling)).hexdigest()
 
 
-def with_filling(prepared: PreparedCase, folder: Path) -> tuple[PreparedCase, list[str]]:
+def settled_filling(folder: Path) -> ParticleState:
+    """The settled filling of a run.
+
+    Raises FileError if the folder holds no run that has filled its cylinder.
+    """
+    later = False
+    for state in map(read_particle_state, reversed(snapshot_files(folder))):
+        if state.phase == "settle" and later:
+            return state
+        later = later or state.phase not in ("fill", "settle")
+    raise FileError(f"{folder.name} holds no settled filling; name the folder of a run that was lifted.")
+
+
+def with_filling(prepared: PreparedCase, folder: Path) -> PreparedCase:
     """The case with the settled filling of an earlier run of the same particles in the same cylinder.
 
-    Gravity, lift, wall and plate may be others. Returns also a sentence if friction between particles, which
-    the filling remembers, is another one.
+    Gravity, lift, wall and plate may be others. What else the filling remembers is a note where it differs.
 
     Raises FileError if the folder holds no run that has filled its cylinder, or one of other particles or
     another cylinder.
     """
-    states = (read_particle_state(path) for path in reversed(snapshot_files(folder)))
-    later = False
-    for state in states:
-        if state.phase == "settle" and later:
-            break
-        later = later or state.phase not in ("fill", "settle")
-    else:
-        raise FileError(f"{folder.name} holds no settled filling; name the folder of a run that was lifted.")
-    earlier = read_run(folder).document
+    state, earlier = settled_filling(folder), read_run(folder).document
     same = (
         len(state) == len(prepared)
         and np.array_equal(state.diameters, prepared.diameters)
@@ -203,11 +205,18 @@ def with_filling(prepared: PreparedCase, folder: Path) -> tuple[PreparedCase, li
             f"{folder.name} was filled with other particles or has another cylinder; its filling goes with "
             f"the same dataset, number, seed, mass and diameter of the cylinder."
         )
-    was, friction = earlier["case"]["contact"]["static_friction"], prepared.case.contact.static_friction
-    notes = (
-        [f"The cylinder was filled with a friction of {was:g}, not {friction:g}."] if was != friction else []
+    contact, filled = prepared.case.contact, earlier["case"]["contact"]
+    remembered = (
+        ("friction", filled["static_friction"], contact.static_friction),
+        ("rolling resistance", filled["rolling_friction"], contact.rolling_friction),
+        ("Bond number", earlier["particles"]["bond_number"][2], scaling_report(prepared).bond_number[2]),
     )
-    return replace(prepared, filling=state), notes
+    notes = [
+        f"The cylinder was filled with a {what} of {was:.3g}, not {now:.3g}."
+        for what, was, now in remembered
+        if not np.isclose(was, now)
+    ]
+    return replace(prepared, filling=state, filling_notes=tuple(notes))
 
 
 def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
@@ -342,7 +351,8 @@ def run_document(
     - ``packing``: of the heap.
     - ``problem``: the message of a failed run.
     """
-    case, notes = prepared.case, [*ending.notes, *engine_notes(engine)] if ending else []
+    case, notes = prepared.case, list(prepared.filling_notes)
+    notes += [*ending.notes, *engine_notes(engine)] if ending else []
     sentences = (*notes, *_sentences(ending, measured))
     return {
         "format": FORMAT,
@@ -360,7 +370,7 @@ def run_document(
         "software": {"regolith-studio": __version__},
         "length_unit": "m",
         "case": case_document(case),
-        "filling_sha256": filling_hash(prepared),
+        "filling": {"sha256": filling_hash(prepared.filling), "notes": list(prepared.filling_notes)},
         "not_given_in_the_paper": [
             *missing_in_paper(LiftingCylinderTest),
             *missing_in_paper(ContactParameters),
@@ -407,6 +417,7 @@ def case_document(case: ReposeCase) -> dict[str, Any]:
         "coarse_graining_asked": case.coarse_graining or None,
         "shapes": case.shapes,
         "cohesion": case.cohesion,
+        "bond_number": case.bond_number or None,
         "seed": case.seed,
     }
     return document if case.drum is None else document | {"drum": asdict(case.drum)}

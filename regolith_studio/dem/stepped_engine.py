@@ -36,10 +36,7 @@ class SteppedEngine(ABC):
 
     @abstractmethod
     def solver(self, prepared: PreparedCase, settings: Any) -> Solver:
-        """The solver of a case.
-
-        Raises InputError if the case has what the solver does not represent.
-        """
+        """The solver of a case."""
 
     def seconds(self, prepared: PreparedCase, settings: Any) -> float:
         """From the cost of a step and the expected length of the phases."""

@@ -9,7 +9,7 @@ from typing import cast
 
 from regolith_studio.dataset.folder_io import dataset_hash
 from regolith_studio.dataset.parameters import DRUM, DrumRotation
-from regolith_studio.dem.engines import ENGINES, engine_named
+from regolith_studio.dem.engines import check_capability, engine_named
 from regolith_studio.dem.run_io import read_run
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import JOURNAL
@@ -72,11 +72,8 @@ class ReposeCalibrationRequest:
         names = Counter(folder.name for folder in self.datasets)
         if twice := [name for name, times in names.items() if times > 1]:
             raise InputError(f"Two datasets have the name {twice[0]}: give them different names.")
-        if self.drum is not None and not engine_named(self.request.engine).capabilities.drum:
-            others = [key for key, engine in ENGINES.items() if engine.capabilities.drum]
-            raise InputError(
-                f"The engine {self.request.engine} turns no drum; take one of {', '.join(others)}."
-            )
+        if self.drum is not None:
+            check_capability(engine_named(self.request.engine), "drum", "rotating drum")
         for name, (low, high) in self.ranges.items():
             if name in CASE_KEYS:
                 raise InputError(f"{name} cannot be calibrated; a value of Table 1 or 2 can.")

@@ -1,7 +1,6 @@
 """Jobs for the angle of repose (2.6, 3.3): simulate the lifting cylinder, measure the pile."""
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,9 +9,15 @@ from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, check_number, measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.drum_angle import DrumMeasurement, measure_drum
-from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
+from regolith_studio.dem.engine import CheckedEngine, Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
-from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
+from regolith_studio.dem.engines import (
+    DEFAULT_ENGINE,
+    ENGINES,
+    check_capability,
+    check_case,
+    engine_named,
+)
 from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing
@@ -62,7 +67,7 @@ class ReposeRequest:
     Raises
     ------
     InputError
-        If the particles are too few for an angle.
+        If the particles are too few for an angle, or the engine has not what the case needs.
     """
 
     case: ReposeCase = field(default_factory=ReposeCase)
@@ -76,6 +81,7 @@ class ReposeRequest:
     def __post_init__(self) -> None:
         if self.case.drum is None:
             check_number(self.case.n_particles, self.evaluation)
+        check_case(engine_named(self.engine), self.case)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,16 +108,14 @@ def repose_steps(dataset_folder: Path, folder: Path, request: ReposeRequest) -> 
     is stopped or fails, and ``repose.json`` says so; but it replaces no finished run. A run that was killed
     or stopped goes on from the last state of its engine when the same is asked for again.
     """
-    prepared, _ = _prepared(dataset_folder, request.case, request.filling)
+    prepared = prepared_case(dataset_folder, request.case, request.filling)
     return (yield from simulate_prepared(prepared, folder, request))
 
 
-def _prepared(
-    dataset_folder: Path, case: ReposeCase, filling: Path | None
-) -> tuple[PreparedCase, Sequence[str]]:
-    """The drawn particles, in the filling of an earlier run if one is named, and notes on that."""
+def prepared_case(dataset_folder: Path, case: ReposeCase, filling: Path | None) -> PreparedCase:
+    """The drawn particles, in the filling of an earlier run if one is named."""
     prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
-    return (prepared, ()) if filling is None else with_filling(prepared, filling)
+    return prepared if filling is None else with_filling(prepared, filling)
 
 
 def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeRequest) -> Steps:
@@ -119,30 +123,26 @@ def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeReque
     yield Started(N_("Angle of repose"), PROGRESS_STEPS)
     engine = engine_named(request.engine)
     settings = engine.Settings() if request.settings is None else request.settings
+    check_prepared(engine, prepared)
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
-    check_shapes(prepared, engine)
-    if prepared.filling is not None and not isinstance(engine, ResumableEngine):
-        others = [each.label for each in ENGINES.values() if isinstance(each, ResumableEngine)]
-        raise InputError(
-            f"{engine.label} fills its cylinder itself; an earlier filling goes with {', '.join(others)}."
-        )
     with staged_run(folder, request.overwrite) as stage:
         save_shapes(stage, prepared)
         return (yield from _simulate(_RunWriter(prepared, engine, settings, stage), folder, request))
 
 
-def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
-    """Check that an engine simulates the shapes of a case."""
-    if prepared.parts and prepared.case.shapes == "polyhedra" and not engine.capabilities.compounds:
-        others = [each.label for each in ENGINES.values() if each.capabilities.compounds]
+def check_prepared(engine: Engine, prepared: PreparedCase) -> None:
+    """Check that an engine simulates the shapes of a case, and begins with its filling."""
+    check_case(engine, prepared.case)
+    if prepared.are_compounds:
+        check_capability(engine, "compounds", f"compounds of convex parts ({prepared.dataset_name})")
+    if isinstance(engine, CheckedEngine):
+        engine.check(prepared)
+    if prepared.filling is not None and not isinstance(engine, ResumableEngine):
+        others = [each.label for each in ENGINES.values() if isinstance(each, ResumableEngine)]
         raise InputError(
-            f"{engine.label} simulates convex particles, and {prepared.dataset_name} holds compounds of "
-            f"convex parts; take one of the engines {', '.join(others)}, or coarsen by another method."
+            f"{engine.label} fills its cylinder itself; an earlier filling goes with {', '.join(others)}."
         )
-    if prepared.case.drum is not None and not engine.capabilities.drum:
-        others = [each.label for each in ENGINES.values() if each.capabilities.drum]
-        raise InputError(f"{engine.label} turns no drum; take one of the engines {', '.join(others)}.")
 
 
 def _simulate(record: "_RunWriter", folder: Path, request: ReposeRequest) -> Steps:
@@ -242,15 +242,15 @@ def measure_result(
 def preview_repose(dataset_folder: Path, case: ReposeCase, filling: Path | None = None) -> Steps:
     """The particles of a case before they fall, or in the filling of an earlier run.
 
-    Returns (:class:`PreparedCase`, :class:`ParticleState`, notes on the filling). The state is empty where
-    there are more than `MAX_PREVIEWED`.
+    Returns (:class:`PreparedCase`, :class:`ParticleState`). The state is empty where there are more than
+    `MAX_PREVIEWED`.
     """
     yield Started(N_("Drawing particles"))
-    prepared, notes = _prepared(dataset_folder, case, filling)
+    prepared = prepared_case(dataset_folder, case, filling)
     yield Progress(1, 2)
     if len(prepared) > MAX_PREVIEWED:
-        return prepared, no_particles(), notes
-    return prepared, prepared.filling if prepared.filling is not None else loose_column(prepared), notes
+        return prepared, no_particles()
+    return prepared, prepared.filling if prepared.filling is not None else loose_column(prepared)
 
 
 def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:

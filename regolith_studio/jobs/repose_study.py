@@ -14,7 +14,7 @@ from regolith_studio.dataset.folder_io import dataset_hash
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.engine_process import EngineError
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.run_io import DOCUMENT, case_document, read_run
+from regolith_studio.dem.run_io import DOCUMENT, case_document, filling_hash, read_run, settled_filling
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import JOURNAL, remove_quietly, staged_folder
@@ -27,8 +27,10 @@ from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, repo
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy, ReposeSurface, runs_from
 
-CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
+CASE_KEYS = ("shapes", "cohesion", "bond_number", "n_particles", "coarse_graining")
 """What of a case can be varied besides the values of Tables 1 and 2."""
+OF_PARTICLES = ("shapes", "n_particles", "coarse_graining", "density", "mass", "diameter")
+"""What a filling cannot be taken again with another value of."""
 SHAPE_KEYS = ("n_facets", "preset")
 """What of the shapes can be varied, each value being a dataset of its own: facets, weights of the loss."""
 
@@ -55,7 +57,11 @@ DATASETS = "datasets"
 
 
 def study_repose(
-    rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1, executor: Executor | int = 1
+    rows: Sequence[ReposeVariant],
+    folder: Path,
+    repeats: int = 1,
+    executor: Executor | int = 1,
+    same_filling: bool = False,
 ) -> Steps:
     """Run every row `repeats` times, each run in a folder of its own; returns :class:`ReposeStudy`.
 
@@ -63,10 +69,14 @@ def study_repose(
     journal or the folder holds already, finished and of the same case, are not run again: a study that was
     stopped is resumed. A run that fails is a row without an angle.
 
-    ``executor``: where runs are simulated, or how many at the same time; they change no result. Workers that
-    are left over are threads of the engine.
+    - ``executor``: where runs are simulated, or how many at the same time; they change no result. Workers
+      that are left over are threads of the engine.
+    - ``same_filling``: whether the cylinder is filled once for each dataset and seed, with the first value,
+      and lifted again with the others.
     """
     plan = [_PlannedRun.of(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
+    if same_filling:
+        plan = _sharing_fillings(plan)
     twice = [name for name, times in Counter(run.name for run in plan).items() if times > 1]
     if twice:
         raise InputError(
@@ -93,25 +103,45 @@ def study_repose(
         journal = folder / JOURNAL / STUDY
         for dataset in {plan[number].row.dataset for number in missing}:
             workers.check_shared(dataset, journal)
-        threads = workers.threads_for(len(missing))
-        jobs = [plan[number].job(journal, threads) for number in missing]
-        with contextlib.closing(workers.as_completed(jobs, follow)) as answers:
-            for answer in answers:
-                if answer is not None:
-                    number = missing[answer[0]]
-                    documents[number], reached[number] = value_of(answer[1]), PROGRESS_STEPS
-                    message = plan[number].name
-                    yield Partial(study())
-                yield Progress(sum(reached.values()), total, message)
+        fills = [number for number in missing if plan[number].filled_by is None]
+        lifts = [number for number in missing if number not in fills]
+        for missing in filter(None, (fills, lifts)):
+            threads = workers.threads_for(len(missing))
+            jobs = [plan[number].job(folder, threads) for number in missing]
+            with contextlib.closing(workers.as_completed(jobs, follow)) as answers:
+                for answer in answers:
+                    if answer is not None:
+                        number = missing[answer[0]]
+                        documents[number], reached[number] = value_of(answer[1]), PROGRESS_STEPS
+                        message = plan[number].name
+                        yield Partial(study())
+                    yield Progress(sum(reached.values()), total, message)
     return study()
+
+
+def _sharing_fillings(plan: "Sequence[_PlannedRun]") -> "list[_PlannedRun]":
+    """The runs, each with the filling of the first one of its dataset and seed.
+
+    Raises InputError if what varies are the particles, or nothing does.
+    """
+    varied = plan[0].row.varied.partition(" ")[0]
+    if varied in (*OF_PARTICLES, "dataset"):
+        raise InputError(f"Runs that differ in {varied} have no filling in common; let each fill its own.")
+    first: dict[tuple[Path, int], _PlannedRun] = {}
+    runs = []
+    for run in plan:
+        filler = first.setdefault((run.row.dataset, run.request.case.seed), run)
+        runs.append(run if filler is run else replace(run, filled_by=filler.name))
+    return runs
 
 
 @dataclass(frozen=True, eq=False)
 class _PlannedRun:
-    """A run of a study: a value with a seed."""
+    """A run of a study: a value with a seed; `filled_by` is the name of the run whose filling it takes."""
 
     row: ReposeVariant
     request: ReposeRequest
+    filled_by: str | None = None
 
     @classmethod
     def of(cls, row: ReposeVariant, seed: int) -> "_PlannedRun":
@@ -135,14 +165,21 @@ class _PlannedRun:
             "{varied} {value}: {step}", varied=Message(self.row.varied), value=self.row.value, step=step
         )
 
+    def _request_in(self, folder: Path) -> ReposeRequest:
+        if self.filled_by is None:
+            return self.request
+        return replace(self.request, filling=study_place(folder, self.filled_by))
+
     def finished_in(self, folder: Path) -> dict[str, Any] | None:
         """Its document, if a study in the folder has run it already."""
-        return finished_run(study_place(folder, self.name), self.row.dataset, self.request)
+        return finished_run(study_place(folder, self.name), self.row.dataset, self._request_in(folder))
 
-    def job(self, journal: Path, threads: int | None) -> Job:
+    def job(self, folder: Path, threads: int | None) -> Job:
         """Simulate it, with as many threads of the engine as it asks for itself, or as are given."""
-        request = self.request if threads is None else replace(self.request, threads=threads)
-        return Job(simulate_study_run, (self.row.dataset, journal / self.name, request))
+        request = self._request_in(folder)
+        if threads is not None:
+            request = replace(request, threads=threads)
+        return Job(simulate_study_run, (self.row.dataset, folder / JOURNAL / STUDY / self.name, request))
 
 
 def study_place(folder: Path, name: str, kind: str = STUDY) -> Path:
@@ -210,6 +247,7 @@ def finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str
     """The document of a finished run of the same case on the same dataset, if there is one."""
     try:
         document = read_run(place).document
+        filling = None if request.filling is None else settled_filling(request.filling)
     except FileError:
         return None
     engine = engine_named(request.engine)
@@ -218,6 +256,7 @@ def finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str
         document["state"] == "finished"
         and document["dataset"]["sha256"] == dataset_hash(dataset)
         and document["case"] == case_document(request.case)
+        and document["filling"]["sha256"] == filling_hash(filling)
         and document["engine"]["key"] == engine.key
         and document["engine"]["settings"] == settings
         and document["measurement"].get("settings", asdict(request.evaluation)) == asdict(request.evaluation)
@@ -229,6 +268,10 @@ def with_value(request: ReposeRequest, key: str, value: Any) -> ReposeRequest:
     """The same request with one value of Table 1, Table 2 or the case changed."""
     case = request.case
     if key in CASE_KEYS:
+        if not isinstance(getattr(case, key), str):
+            value = _to_float(key, value)
+        if key == "n_particles":
+            value = int(value)
         return replace(request, case=replace(case, **{key: value}))
     for part, kind in (("contact", ContactParameters), ("test", LiftingCylinderTest)):
         if key in {each.name for each in fields(kind)}:

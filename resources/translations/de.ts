@@ -2536,10 +2536,6 @@
         <translation>Höhe eines Maximums, das ein eigenes Korn ist, in Voxeln</translation>
     </message>
     <message>
-        <source>Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision</source>
-        <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion, Rollwiderstand; einfache Genauigkeit</translation>
-    </message>
-    <message>
         <source>Hertz and Mindlin stiffness, restitution, different static and dynamic friction</source>
         <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, verschiedene Haft- und Gleitreibung</translation>
     </message>
@@ -7732,24 +7728,12 @@
         <translation>Rauschen der Stichprobe, Teilung {split}</translation>
     </message>
     <message>
-        <source>none</source>
-        <translation>keine</translation>
-    </message>
-    <message>
-        <source>none besides that of edges and faces</source>
-        <translation>keiner außer dem von Kanten und Flächen</translation>
-    </message>
-    <message>
         <source>none of these</source>
         <translation>keines davon</translation>
     </message>
     <message>
-        <source>none: compounds are refused</source>
-        <translation>keine: Verbünde werden abgelehnt</translation>
-    </message>
-    <message>
-        <source>none: drums are refused</source>
-        <translation>keine: Trommeln werden abgelehnt</translation>
+        <source>none: refused</source>
+        <translation>nicht vorhanden: wird abgelehnt</translation>
     </message>
     <message>
         <source>not below {bound:.3g} {unit} (line)</source>

@@ -10,12 +10,10 @@ pytest.importorskip("robox3d")
 
 from robox3d._ffi import lib
 
-from regolith_studio.dem.case import PreparedCase, with_bond_number
-from regolith_studio.dem.engines import engine_named
+from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
 from regolith_studio.dem.lifting_cylinder import SubstepSettings
 from regolith_studio.dem.verification.bodies import cuboid, lowest_heights, random_polyhedron, scene
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 
 
@@ -117,35 +115,12 @@ def test_that_a_run_goes_on_from_its_state() -> None:
     assert np.abs(again.points - first.points).max() < 1e-6
 
 
-def test_that_too_many_facets_are_refused() -> None:
-    directions = np.random.default_rng(0).normal(size=(200, 3))
-    sphere = directions / np.linalg.norm(directions, axis=1)[:, None]
-    prepared = replace(scene([cuboid(1, 1, 1)], 0.5, 1), shapes=(0.6 * sphere,))
-    with pytest.raises(InputError, match="at most 44 facets"):
-        Box3dSolver(prepared, SubstepSettings())
-
-
-def test_that_cohesion_of_compounds_is_refused() -> None:
-    prepared = replace(scene([cuboid(1, 1, 1)], 0.5, 1), parts=((8,),))
-    sticky = replace(prepared, case=replace(prepared.case, cohesion="given"))
-    with pytest.raises(InputError, match="convex particles only"):
-        engine_named("box3d").solver(sticky, SubstepSettings())  # type: ignore[attr-defined]
-
-
-def test_that_no_friction_between_particles_is_refused_where_the_plate_has_one() -> None:
-    smooth = with_values(scene([cuboid(1, 1, 1)], 0.5, 1), static_friction=0.0)
-    with pytest.raises(InputError, match="geometric mean"):
-        engine_named("box3d").solver(smooth, SubstepSettings())  # type: ignore[attr-defined]
-    everywhere = with_values(smooth, wall_friction=0.0, plate_friction=0.0)
-    engine_named("box3d").solver(everywhere, SubstepSettings())  # type: ignore[attr-defined]
-
-
 @pytest.mark.parametrize("shapes", ["polyhedra", "spheres"])
 @pytest.mark.parametrize("bond", [1.0, 10.0])
 def test_that_a_doublet_parts_at_its_pull_off_force(shapes: str, bond: float) -> None:
     """Two cubes or balls without gravity, pulled apart by 0.95 and 1.05 of Bond number times weight."""
-    prepared = with_bond_number(scene([cuboid(1, 1, 1)], 0.5, 2), bond)
-    case = replace(prepared.case, shapes=shapes)
+    prepared = scene([cuboid(1, 1, 1)], 0.5, 2)
+    case = replace(prepared.case, shapes=shapes, bond_number=bond)
     side = (np.pi / 6) ** (1 / 3) if shapes == "polyhedra" else 1.0
     for share, parted in ((0.95, False), (1.05, True)):
         solver = Box3dSolver(replace(prepared, case=case), SubstepSettings())

@@ -18,15 +18,12 @@ from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.lammps import ENGINE as LAMMPS
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.lammps.script import clump_shape
-from regolith_studio.dem.engines.mujoco import ENGINE
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.engines.mujoco.simulation import build_model
 from regolith_studio.dem.run_io import read_shapes, save_shapes
 from regolith_studio.dem.snapshot import Snapshot
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.repose_jobs import check_shapes
 from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments, entry
 from tests.geometry.solids import rotation
 from tests.tolerance import relative
@@ -118,17 +115,6 @@ def test_that_the_shapes_of_a_run_keep_their_parts(prepared: PreparedCase, tmp_p
     assert [len(parts) for parts in shapes] == [2, 1]
     assert [len(part) for part in shapes[0]] == [8, 8]
     assert np.array_equal(np.concatenate(shapes[0]), prepared.shapes[0])
-
-
-def test_that_an_engine_without_compounds_refuses_them(elbows: Dataset) -> None:
-    convex_only = replace(ENGINE, capabilities=replace(ENGINE.capabilities, compounds=""))
-    with pytest.raises(
-        InputError,
-        match="elbows holds compounds of convex parts; take one of the engines MuJoCo, Rapier, Box3D, LAMMPS",
-    ):
-        check_shapes(prepare(elbows, CASE), convex_only)
-    check_shapes(prepare(elbows, ReposeCase(n_particles=40, test=CASE.test, shapes="spheres")), convex_only)
-    check_shapes(prepare(elbows, CASE), ENGINE)
 
 
 def test_that_the_spheres_of_lammps_fill_the_union_and_not_its_hull(prepared: PreparedCase) -> None:

@@ -172,22 +172,6 @@ def test_that_too_few_moments_are_refused(boxes) -> None:
     assert refusal.value.status == "too few moments"
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ("--engine mujoco", "turns no drum"),
-        ("--rpm 5 --froude 0.1", "either --rpm or --froude"),
-        ("--test mass=0.002", "% of the drum"),
-    ],
-)
-def test_that_a_drum_that_cannot_be_is_one_sentence(
-    changes: str, words: str, boxes_folder: Path, tmp_path: Path, capsys
-) -> None:
-    assert run_command(f"repose drum {boxes_folder} -o {tmp_path / 'drum'} -n 60 {changes}".split()) != 0
-    assert words in " ".join(capsys.readouterr().err.split())
-    assert not (tmp_path / "drum").exists()
-
-
 def test_that_values_out_of_range_are_refused() -> None:
     with pytest.raises(InputError):
         DrumRotation(rpm=0.0)

@@ -25,7 +25,6 @@ from regolith_studio.dem.lifting_cylinder import N_WALLS, LiftingSettings, Subst
 from regolith_studio.dem.run_io import read_run, snapshot_files
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import EngineState, Snapshot, read_particle_state
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
 
@@ -60,37 +59,6 @@ def half_heights(solver: RapierSolver) -> FloatArray:
     prepared = solver.prepared
     half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
     return np.asarray(half * prepared.scales / prepared.mean_diameter)
-
-
-@pytest.mark.parametrize("friction", [0.2, 0.5, 0.8])
-def test_that_boxes_begin_to_slide_at_the_angle_of_friction(boxes: Dataset, friction: float) -> None:
-    """Within 0.2 degrees of arctan mu; grains have another coefficient than grain and plate."""
-    slides = {}
-    for offset in (-0.2, 0.2):
-        solver = solver_of(boxes, plate_friction=friction, static_friction=0.6)
-        rows = np.column_stack([np.zeros(10), 1.5 * np.arange(10) - 7.0, half_heights(solver)])
-        place(solver, rows)
-        solver.begin("rest")
-        slope = np.arctan(friction) + np.radians(offset)
-        solver.world.gravity = (np.sin(slope), 0.0, -np.cos(slope))
-        solver.advance(0.05, 600)
-        slides[offset] = solver.points[:, 0]
-    assert slides[-0.2].max() < 0.05
-    assert slides[0.2].min() > 0.5
-    distance = (np.sin(slope) - friction * np.cos(slope)) * 30.0**2 / 2
-    assert slides[0.2].mean() == pytest.approx(distance, rel=0.4)  # a fifth of a degree is little to slide on
-
-
-def test_that_sliding_boxes_feel_the_friction_that_is_set(boxes: Dataset) -> None:
-    """Coulomb's law on a slope of 50 degrees."""
-    solver = solver_of(boxes, plate_friction=0.8)
-    place(solver, np.column_stack([np.full(10, -14.0), 1.5 * np.arange(10) - 7.0, half_heights(solver)]))
-    solver.begin("rest")
-    slope = np.radians(50.0)
-    solver.world.gravity = (np.sin(slope), 0.0, -np.cos(slope))
-    solver.advance(0.05, 200)
-    speed = np.mean([body.linvel.x for body in solver.particles])
-    assert np.tan(slope) - speed / solver.time / np.cos(slope) == pytest.approx(0.8, abs=0.01)
 
 
 def test_that_rapier_fills_with_half_the_friction_of_particles_and_all_of_wall_and_plate(
@@ -324,13 +292,3 @@ def kill_after_states(
     with pytest.raises(Killed):
         run_task(Pipe(), request.engine, prepared, request.settings, stage)
     assert (stage / "state.zip").exists()
-
-
-def test_that_what_rapier_lacks_is_refused(boxes: Dataset) -> None:
-    rough = ReposeCase(TEST, ContactParameters(rolling_friction=0.1), n_particles=40)
-    sticky = ReposeCase(TEST, n_particles=40, cohesion="given")
-    for case, sentence in ((rough, "no rolling resistance"), (sticky, "no cohesion")):
-        with pytest.raises(InputError, match=sentence):
-            engine_named("rapier").simulate(prepare(boxes, case), SubstepSettings())
-    with pytest.raises(InputError, match="time_step"):
-        SubstepSettings(time_step=1.0)

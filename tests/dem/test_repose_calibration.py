@@ -257,5 +257,5 @@ def test_that_two_angles_find_two_parameters_and_are_data_afterwards(
     assert friction["interval"][0] < 0.6 < friction["interval"][1]
     assert rolling["interval"][0] < 0.3 < rolling["interval"][1]
     assert np.ptp(rolling["interval"]) < 0.3
-    with pytest.raises(InputError, match="turns no drum"):
+    with pytest.raises(InputError, match="no rotating drum"):
         replace(wanted, request=replace(base, engine="mujoco"))

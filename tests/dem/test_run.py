@@ -15,6 +15,7 @@ import pytest
 
 from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
@@ -22,9 +23,17 @@ from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engine_process import EngineError
 from regolith_studio.dem.engines import ENGINES
+from regolith_studio.dem.engines.mujoco import ENGINE
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.evaluation import EvaluationSettings
-from regolith_studio.dem.run_io import find_runs, read_run, read_shapes, snapshot_files
+from regolith_studio.dem.run_io import (
+    filling_hash,
+    find_runs,
+    read_run,
+    read_shapes,
+    settled_filling,
+    snapshot_files,
+)
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
@@ -34,6 +43,7 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
+    check_prepared,
     measure_result,
     repose_steps,
     simulate_prepared,
@@ -41,6 +51,7 @@ from regolith_studio.jobs.repose_jobs import (
 from regolith_studio.jobs.repose_study import (
     ReposeStudyRequest,
     ReposeVariant,
+    finished_run,
     run_repose_study,
     study_repose,
     values_in,
@@ -117,14 +128,6 @@ def test_that_a_run_and_a_measurement_of_its_file_are_one_answer(
     assert (measured["angle_deg"], *measured["interval_deg"]) == (own.angle, *own.interval)
 
 
-def test_that_too_few_particles_are_refused_before_the_run(
-    boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run"), "-n", "120"]) == 1
-    assert "120 particles are too few" in capsys.readouterr().err
-    assert not (tmp_path / "run").exists()
-
-
 def test_that_a_filled_cylinder_is_lifted_again_under_another_gravity(
     finished: Path, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -141,14 +144,15 @@ def test_that_a_filled_cylinder_is_lifted_again_under_another_gravity(
     assert run(again) == 0
     assert "filled with a friction of 0.8, not 0.7" in capsys.readouterr().err
     first, second = read_run(finished).document, read_run(tmp_path / "moon").document
-    assert first["filling_sha256"] is None
+    assert first["filling"] == {"sha256": None, "notes": []}
     filled = [
         state for state in map(read_particle_state, snapshot_files(finished)) if state.phase == "settle"
     ]
     begun = read_particle_state(snapshot_files(tmp_path / "moon")[0])
     assert begun.phase == "settle"
     np.testing.assert_allclose(begun.points, filled[-1].points, rtol=0.0, atol=1e-12)
-    assert second["filling_sha256"] == hashlib.sha256(particle_state_bytes(filled[-1])).hexdigest()
+    assert second["filling"]["notes"] == ["The cylinder was filled with a friction of 0.8, not 0.7."]
+    assert second["filling"]["sha256"] == hashlib.sha256(particle_state_bytes(filled[-1])).hexdigest()
     assert second["run"]["steps"] < first["run"]["steps"]
 
 
@@ -161,6 +165,24 @@ def test_that_a_filling_of_other_particles_is_refused_before_the_run(
     assert run([*command, "--filling", str(tmp_path)]) == 1
     assert "holds no settled filling" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
+
+
+def test_that_a_study_lifts_one_filling_at_all_of_its_values(
+    finished: Path, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The run of the first value is there already; what has another filling, or none, is no data."""
+    study = shutil.copytree(finished, tmp_path / "study" / "static_friction_0.8_seed1").parent
+    words = ["repose", "study", str(boxes_folder), "-o", str(study), "--vary", "static_friction=0.8,0.7"]
+    assert run([*words, *COMMAND, "--same-filling"]) == 0
+    assert "filled with a friction of 0.8, not 0.7" in capsys.readouterr().err
+    second = study / "static_friction_0.7_seed1"
+    document = read_run(second).document
+    assert document["filling"]["sha256"] == filling_hash(settled_filling(finished))
+    assert document["run"]["steps"] < read_run(finished).document["run"]["steps"]
+    shared = replace(with_value(ORDER, "static_friction", 0.7), filling=finished)
+    assert finished_run(second, boxes_folder, shared) == document
+    assert finished_run(second, boxes_folder, replace(shared, filling=None)) is None
+    assert finished_run(second, boxes_folder, replace(shared, filling=second)) is None
 
 
 def test_that_the_snapshots_tell_the_whole_test(finished: Path) -> None:
@@ -207,15 +229,6 @@ def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, t
     fresh = study_repose([replace(row, request=other)], tmp_path)
     assert any(isinstance(step, Progress) and "simulated" in step.message for step in fresh)
     fresh.close()
-
-
-def test_that_a_study_s_wishes_are_checked(
-    boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    where = ["repose", "study", str(boxes_folder), "-o", str(tmp_path / "study")]
-    for wrong in ("static_friction", "static_friction=-1", "colour=red", "static_friction=,2"):
-        assert run([*where, "--vary", wrong]) == 2
-    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_that_a_wish_of_the_window_is_the_same_study(
@@ -348,28 +361,6 @@ def test_that_a_second_run_into_a_folder_is_one_sentence(boxes_folder: Path, tmp
     assert list(tmp_path.iterdir()) == []
 
 
-def test_that_bad_wishes_are_one_sentence(
-    boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    where = ["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run")]
-    assert run([*where, "--contact", "static_friction=-1"]) == 2
-    assert run([*where, "--engine", "abacus"]) == 2
-    assert run([*where, "--set", "speed=3"]) == 2
-    assert run([*where, "-n", "12", "--measure", "min_particles=10"]) == 1
-    assert run(["repose", "run", str(tmp_path), "-o", str(tmp_path / "run")]) == 1
-    result = capsys.readouterr().err
-    assert "Traceback" not in result
-    assert "wider cylinder" in result
-    assert not (tmp_path / "run").exists()
-
-
-def test_that_an_unknown_engine_is_an_input_error() -> None:
-    from regolith_studio.dem.engines import engine_named
-
-    with pytest.raises(InputError, match="mujoco"):
-        engine_named("abacus")
-
-
 def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["repose", "engines", "--json"]) == 0
     rows = {row["key"]: row for row in json.loads(capsys.readouterr().out)}
@@ -378,6 +369,68 @@ def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[
     assert all(row["missing"] for row in rows.values())
     assert run(["repose", "engines"]) == 0
     assert "polyhedra" in capsys.readouterr().out
+
+
+REFUSED = """
+run --contact static_friction=-1 | 2 | must lie between
+run --engine abacus | 2 | There is no engine 'abacus'; there are mujoco
+run --set speed=3 | 2 | no setting of MuJoCo 'speed'
+run --engine rapier --set time_step=1 | 2 | time_step must lie
+run -n 12 --measure min_particles=10 | 1 | wider cylinder
+run -n 120 --measure min_particles=150 | 1 | 120 particles are too few
+run --bond 3 --cohesion given | 2 | either a Bond number or cohesion given
+run --engine rapier --bond 3 | 1 | no cohesion; take one of the engines MuJoCo, Box3D, LAMMPS.
+run --engine rapier --cohesion given | 1 | Rapier simulates no cohesion
+run --engine rapier --contact rolling_friction=0.1 | 1 | Rapier simulates no rolling resistance
+run --engine box3d --contact static_friction=0 | 1 | geometric mean of two frictions
+study --engine rapier --vary rolling_friction=0,0.1 | 2 | Rapier simulates no rolling resistance
+study --engine rapier --vary bond_number=0,1 | 2 | Rapier simulates no cohesion
+study --vary static_friction | 2 | KEY=V1,V2
+study --vary static_friction=-1 | 2 | must lie between
+study --vary colour=red | 2 | cannot be varied
+study --vary static_friction=,2 | 2 | KEY=V1,V2
+study --vary n_particles=many | 2 | must be a number
+study --vary n_particles=40,50 --same-filling | 1 | differ in n_particles have no filling in common
+study --same-filling | 1 | differ in dataset have no filling in common
+calibrate --angle 30 --engine rapier --parameter rolling_friction=0,1 | 2 | no rolling resistance
+calibrate --angle 30 --engine mujoco --drum-angle 40 | 2 | MuJoCo simulates no rotating drum
+drum --engine mujoco | 1 | MuJoCo simulates no rotating drum; take one of the engines Rapier, Box3D.
+drum --rpm 5 --froude 0.1 | 2 | either --rpm or --froude
+drum --test mass=0.002 | 1 | % of the drum
+"""
+
+
+@pytest.mark.parametrize("row", REFUSED.strip().splitlines())
+def test_that_what_cannot_be_run_is_one_sentence_before_anything_runs(
+    row: str, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words, code, sentence = row.split(" | ")
+    name, *options = words.split()
+    few = [] if name == "drum" or "min_particles" in words else ["--measure", "min_particles=40"]
+    usual = [str(boxes_folder), "-o", str(tmp_path / "out"), "-n", "60", *few]
+    assert run(["repose", name, *usual, *options]) == int(code)
+    printed = " ".join(capsys.readouterr().err.replace("│", " ").split())
+    assert sentence in printed
+    assert "Traceback" not in printed
+    assert not (tmp_path / "out").exists()
+
+
+def test_that_shapes_which_an_engine_lacks_are_refused(boxes: Dataset, elbows: Dataset) -> None:
+    convex, engine = (
+        replace(ENGINE, capabilities=replace(ENGINE.capabilities, compounds="")),
+        ENGINES["box3d"],
+    )
+    small = replace(CASE, n_particles=40)
+    refused = "no compounds of convex parts .elbows.; take one of the engines MuJoCo, Rapier, Box3D, LAMMPS"
+    with pytest.raises(InputError, match=refused):
+        check_prepared(convex, prepare(elbows, small))
+    check_prepared(convex, prepare(elbows, replace(small, shapes="spheres")))
+    check_prepared(engine, prepare(elbows, small))
+    with pytest.raises(InputError, match="convex particles only"):
+        check_prepared(engine, prepare(elbows, replace(small, bond_number=1.0)))
+    many = replace(prepare(boxes, small), shapes=(icosphere(2).vertices,) * 2)
+    with pytest.raises(InputError, match="at most 44 facets"):
+        check_prepared(engine, many)
 
 
 def _workers() -> list[psutil.Process]:

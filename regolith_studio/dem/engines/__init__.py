@@ -1,8 +1,10 @@
 """DEM engines by key; each module of this folder that defines ``ENGINE`` is one."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
+from regolith_studio.dem.case import ReposeCase
 from regolith_studio.dem.engine import Engine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
@@ -37,6 +39,34 @@ CAPABILITY_LABELS = {
 }
 
 
+NEEDED: Mapping[str, tuple[str, Callable[[ReposeCase], bool]]] = {
+    "cohesion": ("cohesion", lambda case: case.is_cohesive),
+    "rolling": ("rolling resistance", lambda case: case.contact.rolling_friction > 0.0),
+    "drum": ("rotating drum", lambda case: case.drum is not None),
+}
+"""By capability, what it is called and whether a case needs it."""
+
+
+def check_capability(engine: Engine, key: str, what: str) -> None:
+    """Check that an engine has a capability, which is called `what`.
+
+    Raises InputError if it does not.
+    """
+    if not getattr(engine.capabilities, key):
+        others = ", ".join(each.label for each in ENGINES.values() if getattr(each.capabilities, key))
+        raise InputError(f"{engine.label} simulates no {what}; take one of the engines {others}.")
+
+
+def check_case(engine: Engine, case: ReposeCase) -> None:
+    """Check that an engine has what a case needs, but for its shapes.
+
+    Raises InputError if it does not.
+    """
+    for key, (what, needs) in NEEDED.items():
+        if needs(case):
+            check_capability(engine, key, what)
+
+
 def engine_rows() -> list[dict[str, Any]]:
     """One dictionary per engine: key, label, licence, version or problem, and capabilities."""
     rows = []
@@ -49,9 +79,7 @@ def engine_rows() -> list[dict[str, Any]]:
                 "licence": engine.licence,
                 "version": status.version,
                 "problem": status.problem,
-                **asdict(engine.capabilities),
-                "compounds": engine.capabilities.compounds or N_("none: compounds are refused"),
-                "drum": engine.capabilities.drum or N_("none: drums are refused"),
+                **{key: how or N_("none: refused") for key, how in asdict(engine.capabilities).items()},
             }
         )
     return rows

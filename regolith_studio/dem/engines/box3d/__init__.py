@@ -11,6 +11,9 @@ from regolith_studio.dem.stepped_engine import SteppedEngine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 
+MAX_VERTICES = 84
+"""Box3D's hulls have at most 126 edges, which are two thirds as many vertices; of more points it may search
+for a hull for ever."""
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves, of at most 44 facets"),
     normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
@@ -45,19 +48,25 @@ class Box3dEngine(SteppedEngine):
         except PackageNotFoundError:
             return Availability(problem=N_("Box3D is not installed; install the package robox3d."))
 
-    def solver(self, prepared: PreparedCase, settings: SubstepSettings) -> Solver:
-        """Box3D with the particles of a case.
-
-        Raises InputError if the case has what the solver does not represent.
-        """
-        if prepared.surface_energy > 0.0 and prepared.parts and prepared.case.shapes == "polyhedra":
-            raise InputError("Box3D has cohesion between convex particles only; take cohesion none.")
+    def check(self, prepared: PreparedCase) -> None:
+        """Check shapes and frictions."""
         case = prepared.case
+        if prepared.are_compounds and case.is_cohesive:
+            raise InputError("Box3D has cohesion between convex particles only; take cohesion none.")
         if case.contact.static_friction == 0.0 < max(case.test.wall_friction, case.test.plate_friction):
             raise InputError(
                 "Box3D takes the geometric mean of two frictions, so that wall and plate have none where the "
                 "particles have none; take Rapier or MuJoCo, or a friction above 0."
             )
+        most = max(len(part) for parts in prepared.part_vertices for part in parts)
+        if case.shapes == "polyhedra" and most > MAX_VERTICES:
+            raise InputError(
+                f"Box3D takes convex polyhedra of at most 44 facets (126 edges), and one with {most} "
+                f"vertices has more; take fewer facets, or another engine."
+            )
+
+    def solver(self, prepared: PreparedCase, settings: SubstepSettings) -> Solver:
+        """Box3D with the particles of a case."""
         from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
 
         return Box3dSolver(prepared, settings)

@@ -40,9 +40,6 @@ CONTACT_HERTZ, CONTACT_DAMPING = 60.0, 3.0
 """Frequency and damping ratio with which overlaps are pushed apart."""
 RESTITUTION_SPEED = 0.1
 """Speed in sqrt(g d) below which an impact has no restitution, so that what touches comes to rest."""
-MAX_VERTICES = 84
-"""Box3D's hulls have at most 126 edges, which are two thirds as many vertices; of more points it may search
-for a hull for ever."""
 MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
 """Largest way in a step of all but one in a hundred particles, in mean diameters, and smallest share of the
 time step that is set."""
@@ -289,13 +286,10 @@ class _Forms:
 
 def _hull(vertices: FloatArray) -> Any:
     points = ffi.new("b3Vec3[]", [tuple(map(float, each)) for each in vertices])
-    hull = ffi.NULL
-    if len(vertices) <= MAX_VERTICES:
-        hull = lib.b3CreateHull(points, len(vertices), MAX_VERTICES)
+    hull = lib.b3CreateHull(points, len(vertices), len(vertices))
     if hull == ffi.NULL or hull.vertexCount != len(vertices):
         raise InputError(
-            f"Box3D takes convex polyhedra of at most 44 facets (126 edges), and one with {len(vertices)} "
-            f"vertices has more; take fewer facets, or another engine."
+            f"Box3D makes no hull of a polyhedron of {len(vertices)} vertices; take another engine."
         )
     return ffi.gc(hull, lib.b3DestroyHull)
 

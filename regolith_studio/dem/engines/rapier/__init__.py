@@ -8,17 +8,16 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.lifting_cylinder import Solver, SubstepSettings
 from regolith_studio.dem.stepped_engine import SteppedEngine
-from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra, their edges rounded by 0.5 % of the diameter"),
     normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
-    cohesion=N_("none"),
-    rolling=N_("none besides that of edges and faces"),
+    cohesion="",
+    rolling="",
     coarse_graining=N_("by size"),
-    missing=N_("Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision"),
+    missing=N_("Hertz and Mindlin stiffness; single precision"),
     compounds=N_("one body of several convex parts, with mass and inertia of their union"),
     drum=N_("a closed ring of boxes and two end plates that turn"),
 )
@@ -49,14 +48,7 @@ class RapierEngine(SteppedEngine):
             return Availability(problem=N_("Rapier is not installed; install the package rapier3d."))
 
     def solver(self, prepared: PreparedCase, settings: SubstepSettings) -> Solver:
-        """Rapier with the particles of a case.
-
-        Raises InputError if the case has what the solver does not represent.
-        """
-        if prepared.surface_energy > 0.0:
-            raise InputError("Rapier has no cohesion; take LAMMPS, or cohesion none.")
-        if prepared.case.contact.rolling_friction > 0.0:
-            raise InputError("Rapier has no rolling resistance; take MuJoCo, Box3D or LAMMPS.")
+        """Rapier with the particles of a case."""
         from regolith_studio.dem.engines.rapier.simulation import RapierSolver
 
         return RapierSolver(prepared, settings)

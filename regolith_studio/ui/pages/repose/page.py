@@ -344,7 +344,7 @@ class ReposePage(PageWidget):
     def _start_preview(self, dataset: Path, request: ReposeRequest) -> None:
         """Draw the particles of a request: its consequences, and the shapes that a run shows."""
 
-        def show(drawn: tuple[PreparedCase, ParticleState, Sequence[str]]) -> None:
+        def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
             self._show_preview(request, *drawn)
 
         job = Job(preview_repose, (dataset, request.case, request.filling))
@@ -370,12 +370,10 @@ class ReposePage(PageWidget):
         self.angle.set_start(tr("Run the test") if has_dataset else tr("Use the open particles"))
         self.angle.set_startable(self.setup.problem_of_run() if has_dataset else "")
 
-    def _show_preview(
-        self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState, notes: Sequence[str]
-    ) -> None:
+    def _show_preview(self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState) -> None:
         self._prepared = (prepared, request)
         report = scaling_report(prepared)
-        self.setup.show_consequences([*map(translate, (*notes, *report.sentences))])
+        self.setup.show_consequences([*map(translate, (*prepared.filling_notes, *report.sentences))])
         self._offer_run()
         scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
         self._show_limits(CaseScale(len(prepared), report.diameters_across, report.coarse_graining))
