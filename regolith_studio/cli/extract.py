@@ -258,6 +258,7 @@ def _extract_groups(
 
     output.mkdir(parents=True, exist_ok=True)
     done = run_with_progress(extract_groups(scans, output, executor), logged=True)
+    print_errors(f"{group}: {note}" for group, note in done.notes)
     print_errors(sentence for _, sentence in done.problems)
     if done.comparison is not None and as_json:
         typer.echo(json_text(done.comparison), nl=False)
@@ -356,15 +357,7 @@ def extract(
             kept = unfinished_file(output)
             done = run_with_progress(folder.extract(given, chosen, output.parent, executor, labels, kept))
             document = folder.finish(given, chosen, done)
-    if done.facts is not None and done.facts.n_not_finite:
-        print_errors(
-            [
-                f"{given.path.name}: {done.facts.n_not_finite:,} voxels hold no finite number "
-                "(NaN or infinity) and are in no grain."
-            ]
-        )
-    if done.facts is not None:
-        print_errors(f"{given.path.name}: {hint_label}" for hint_label in done.facts.notes_on)
+    print_errors(f"{given.path.name}: {note}" for note in done.notes)
     if json:
         print_json(document)
     else:

@@ -92,7 +92,6 @@ class SegmentationSummary:
     n_grains: int
     n_small: int
     n_not_finite: int
-    notes_on: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -103,6 +102,7 @@ class ExtractedFile:
     - ``facts``: of the segmentation, where there was one.
     - ``sha256``: of the file, or of its slices one after the other.
     - ``shape``, ``dtype``, ``voxel_size``, ``kind``: of the volume; micrometres.
+    - ``notes``: sentences about the file and its segmentation that a user should read.
     """
 
     extraction: Extraction
@@ -112,6 +112,7 @@ class ExtractedFile:
     dtype: str
     voxel_size: tuple[float, ...]
     kind: VolumeKind
+    notes: tuple[str, ...] = ()
 
 
 def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None = None) -> Steps:
@@ -211,7 +212,8 @@ def _extract(
 ) -> Steps:
     yield from compile_first("scan")
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
-    source = recipe.region.of(given.opened())
+    file = given.opened()
+    source, notes = recipe.region.of(file), list(file.notes)
     run = map if executor.in_this_thread else executor.map
     origin = _source_of(given.path, source)
     with ExitStack() as stack:
@@ -228,7 +230,8 @@ def _extract(
             segmentation: Segmentation = yield from segment_volume(
                 volume, recipe.segmentation, scratch, run, outside
             )
-            facts = _summary_of(segmentation, recipe.segmentation.threshold)
+            facts = _summary_of(segmentation)
+            notes += _notes_of(segmentation, recipe.segmentation.threshold)
             labels, grey = segmentation.labels, volume
             del segmentation
         if labels_file is not None:
@@ -241,7 +244,14 @@ def _extract(
         raise InputError(_no_particle_message(given.path, extraction))
     sizes = tuple(volume.voxel_size.tolist())
     return ExtractedFile(
-        extraction, facts, origin.sha256, volume.shape, str(volume.dtype), sizes, volume.kind
+        extraction,
+        facts,
+        origin.sha256,
+        volume.shape,
+        str(volume.dtype),
+        sizes,
+        volume.kind,
+        tuple(notes),
     )
 
 
@@ -274,23 +284,29 @@ def _handed_over(
         yield Progress(step.done, step.total, step.name)
 
 
-def _summary_of(segmentation: Segmentation, threshold: ThresholdSettings) -> SegmentationSummary:
-    notes_on = [] if segmentation.outside is None else [segmentation.outside.hint_label]
-    hidden = hidden_class(segmentation.seen, segmentation.level, threshold)
-    if hidden is not None:
-        first, second, gap = hidden
-        notes_on.append(
-            f"The voxels that are no grain at {segmentation.level:g} are of two kinds, about {first:g} and "
-            f"{second:g}: if the latter are grains, take --threshold {gap:g} or multi-otsu."
-        )
+def _summary_of(segmentation: Segmentation) -> SegmentationSummary:
     return SegmentationSummary(
         segmentation.level,
         segmentation.n_bodies,
         segmentation.n_grains,
         segmentation.n_small,
         segmentation.n_not_finite,
-        tuple(notes_on),
     )
+
+
+def _notes_of(segmentation: Segmentation, threshold: ThresholdSettings) -> Iterator[str]:
+    if segmentation.n_not_finite:
+        count = segmentation.n_not_finite
+        yield f"{count:,} voxels hold no finite number (NaN or infinity) and are in no grain."
+    if segmentation.outside is not None:
+        yield segmentation.outside.hint_label
+    hidden = hidden_class(segmentation.seen, segmentation.level, threshold)
+    if hidden is not None:
+        first, second, gap = hidden
+        yield (
+            f"The voxels that are no grain at {segmentation.level:g} are of two kinds, about {first:g} and "
+            f"{second:g}: if the latter are grains, take --threshold {gap:g} or multi-otsu."
+        )
 
 
 def _no_particle_message(path: Path, extraction: Extraction) -> str:

@@ -7,6 +7,7 @@ import re
 import shutil
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import tifffile
@@ -49,6 +50,20 @@ def test_that_voxels_without_a_finite_number_are_reported(command, tmp_path: Pat
     assert result.code == 0
     assert result.err == "balls.npy: 2 voxels hold no finite number (NaN or infinity) and are in no grain.\n"
     assert len(rows_of(tmp_path / "x")) == 2
+
+
+def test_that_what_a_reader_notes_is_printed_and_listed(command, tmp_path: Path) -> None:
+    """Without it, a choice between two volumes, sheared axes and a mirror image were silent."""
+    note = "The file holds 2 volumes; a was read."
+    for name in ("one", "two"):
+        with h5py.File(tmp_path / f"{name}.h5", "w") as file:
+            file["a"] = file["b"] = two_balls()
+    scans, size = [tmp_path / "one.h5", tmp_path / "two.h5"], ["--voxel-size", 1, "--surface", "mask"]
+    assert command("extract", scans[0], "-o", tmp_path / "x", *size).err == f"one.h5: {note}\n"
+    assert json.loads((tmp_path / "x" / "extraction.json").read_text("utf-8"))["notes"] == [note]
+    several = command("extract", *scans, "-o", tmp_path / "y", *size)
+    assert several.code == 0
+    assert f"one: {note}\ntwo: {note}\n" in several.err
 
 
 @pytest.mark.parametrize("surface", ["grey", "mask"])

@@ -14,7 +14,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.readers.error_messages import display_name
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.settings import unit_factor
-from regolith_studio.readers.voxels.header import DatasetEntry, Kind, Shape, Sizes
+from regolith_studio.readers.voxels.header import DatasetEntry, Kind, Shape, Sizes, VoxelHeader
 
 VoxelSize = float | Sequence[float]
 
@@ -88,18 +88,18 @@ class VolumeHeader:
 
     def micrometres(self, voxel_size: VoxelSize | None = None, unit: str | None = None) -> Sizes:
         """Edges of a voxel along x, y and z in micrometres, see `voxel_size_in_micrometres`."""
-        return voxel_size_in_micrometres(self.path, (self.voxel_size, self.unit), voxel_size, unit)
+        return voxel_size_in_micrometres(self.path, self, voxel_size, unit)
 
 
 def voxel_size_in_micrometres(
     path: Path,
-    stated: tuple[Sizes | None, str | None],
+    header: "VolumeHeader | VoxelHeader",
     voxel_size: VoxelSize | None,
     unit: str | None,
 ) -> Sizes:
     """Edges of a voxel: those given, else those that the file states.
 
-    - ``stated``: edges and unit of the file, each None where it does not state it.
+    - ``header``: of the file, with its edges and unit.
     - ``voxel_size``: one edge or three (x, y, z) in `unit`, or in micrometres without one.
     - ``unit``: with no `voxel_size`: the unit of the file's own numbers, or ``voxel:SIZE``.
 
@@ -114,7 +114,10 @@ def voxel_size_in_micrometres(
         if len(edges) != 3 or not all(math.isfinite(edge) and edge > 0.0 for edge in edges):
             raise InputError(f"A voxel has one edge or three positive ones, got {voxel_size}.")
         return edges[0], edges[1], edges[2]
-    sizes, its_unit = stated
+    sizes, its_unit = header.voxel_size, header.unit
+    if sizes is None and header.notes:  # they may say that the file states two
+        notes = " ".join(header.notes)
+        raise InputError(f"Give the size of a voxel of {display_name(path)} in micrometres. {notes}")
     if sizes is None:
         raise InputError(
             f"{display_name(path)} does not state the size of a voxel; give the size in micrometres."

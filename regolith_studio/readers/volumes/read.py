@@ -390,7 +390,7 @@ def read_volume(
         If the voxel size is unknown, or the box lies outside the volume.
     """
     file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
-    edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
+    edges = voxel_size_in_micrometres(file.path, file.header, voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
     kind = kind or file.header.kind or _guess_kind(file)
@@ -418,7 +418,7 @@ def open_slabs(
     Parameters and errors are those of `read_volume`.
     """
     file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
-    edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
+    edges = voxel_size_in_micrometres(file.path, file.header, voxel_size, unit)
     nz, ny, nx = file.header.shape
     kind = kind or file.header.kind or _guess_kind(file)
     dtype = np.dtype(np.int64) if kind == "labels" and file.header.dtype.kind == "f" else file.header.dtype

@@ -43,12 +43,14 @@ class ScanGroups:
     - ``extracted``, ``kept``: names of the groups that were extracted now, and that were there from an
       earlier run.
     - ``problems``: name of each scan that gave no particles, and why.
+    - ``notes``: name of each scan with a sentence about it that a user should read.
     - ``comparison``: the table that was written as ``groups.csv``; None where there is no group.
     """
 
     extracted: tuple[str, ...]
     kept: tuple[str, ...]
     problems: tuple[tuple[str, str], ...]
+    notes: tuple[tuple[str, str], ...]
     comparison: Table | None
 
 
@@ -81,7 +83,7 @@ def extract_groups(
     """
     if (output / LISTED).exists():
         raise FileError(f"The folder {output} holds the particles of one scan; name another for several.")
-    extracted, kept, problems = [], [], []
+    extracted, kept, problems, notes = [], [], [], []
     for number, (given, settings) in enumerate(scans, start=1):
         if not output.is_dir():
             raise FileError(f"The folder {output} was removed while it was written to.")
@@ -96,6 +98,7 @@ def extract_groups(
                 steps = folder.extract(given, settings, output, workers, unfinished=place)
                 done = yield from _numbered(steps, given.group, number, len(scans))
                 folder.finish(given, settings, done)
+            notes += [(given.group, note) for note in done.notes]
             extracted.append(given.group)
         except RegolithError as error:
             problems.append((given.group, str(error)))
@@ -104,7 +107,7 @@ def extract_groups(
         comparison = _write_tables(
             output, [given.group for given, _ in scans if given.group in {*extracted, *kept}]
         )
-    return ScanGroups(tuple(extracted), tuple(kept), tuple(problems), comparison)
+    return ScanGroups(tuple(extracted), tuple(kept), tuple(problems), tuple(notes), comparison)
 
 
 def _numbered(steps: Steps, name: str, number: int, count: int) -> Steps:

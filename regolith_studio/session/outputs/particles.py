@@ -123,6 +123,7 @@ def recipe_document(volume: VolumeInput, recipe: GrainSettings, result: Extracte
         "n_particles": result.extraction.n_found,
         "border": list(result.extraction.border),
         "small": list(result.extraction.small),
+        "notes": list(result.notes),
     }
     if result.facts is not None:
         document["segmented"] = asdict(result.facts)
