@@ -53,7 +53,7 @@ from unittest.mock import patch
 import numpy as np
 
 from benchmarks import attack_inputs
-from benchmarks.sample_inputs import write_inputs
+from benchmarks.attack_inputs import write_inputs
 from regolith_studio import __main__ as program
 from regolith_studio.cli import entry
 

@@ -2,19 +2,6 @@
 
 from pathlib import Path
 
-from regolith_studio.dataset.folder_io import read_dataset
-
-
-def test_that_a_built_dataset_is_sound_and_reads_back(command, grains: Path, tmp_path: Path) -> None:
-    result = command(
-        "dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric", "--name", "trio"
-    )
-    assert result.code == 0
-    dataset = read_dataset(tmp_path / "set")
-    assert dataset.name == "trio"
-    assert len(dataset) == 3
-    assert command("dataset", "validate", tmp_path / "set").code == 0
-
 
 def test_that_a_damaged_dataset_is_found_out(command, grains: Path, tmp_path: Path) -> None:
     command("dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric")

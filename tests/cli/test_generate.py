@@ -131,14 +131,6 @@ def test_that_coefficients_of_many_particles_go_into_one_archive(command, tmp_pa
     assert "ln radius" in document["coefficients"]
 
 
-def test_that_meshes_can_be_given_in_place_of_their_fit(command, ellipsoids: Path, tmp_path: Path) -> None:
-    wanted = ("-n", 3, "-o", tmp_path / "v", "--model", "gaussian_field", "--l-max", 3, "--level", 2)
-    result = command("generate", ellipsoids, *wanted, "--json")
-    assert result.code == 0, result.err
-    assert result.json["source"]["n_particles"] == 24
-    assert result.json["l_max"] == 3
-
-
 def test_that_draws_are_compared_with_their_sample(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("-n", 30, "--format", "npz", "--model", "gaussian_field", "--l-max", 2)
     result = command("generate", fit, "-o", tmp_path / "v", *wanted)
@@ -219,12 +211,6 @@ def test_that_a_source_that_is_none_is_one_sentence(
     assert result.code in (1, 2)
     assert words in result.err
     assert not list(tmp_path.iterdir())
-
-
-def test_that_one_particle_makes_no_model(command, ellipsoids: Path, tmp_path: Path) -> None:
-    result = command("generate", ellipsoids / "grain-00.stl", "-o", tmp_path / "v")
-    assert result.code == 1
-    assert "at least 2 different particles, got 1" in result.err
 
 
 @pytest.mark.slow

@@ -2,10 +2,8 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -208,48 +206,3 @@ def test_that_check_survives_a_library_that_crashes_and_ends_with_1(
     said = command("check", "--json")
     assert said.code == 1
     assert list(said.json["libraries"].values()) == ["loads", "the attempt ended with signal 6."]
-
-
-@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
-@pytest.mark.parametrize(
-    ("name", "code_of_end"),
-    [
-        ("SIGINT", 130),
-        pytest.param("SIGTERM", 143, marks=pytest.mark.slow),
-        pytest.param("SIGHUP", 129, marks=pytest.mark.slow),
-    ],
-)
-def test_that_a_signal_ends_a_command_without_a_traceback_or_half_an_output(
-    grains: Path, tmp_path: Path, name: str, code_of_end: int
-) -> None:
-    ready = tmp_path / "ready"
-    code = (
-        "import sys, pathlib\n"
-        "from regolith_studio.jobs import coarsening_jobs\n"
-        "def forever(*_, **__):\n"
-        f"    pathlib.Path({str(ready)!r}).write_text('')\n"
-        "    while True:\n"
-        "        yield coarsening_jobs.Progress(0, 1, '')\n"
-        "coarsening_jobs.coarsen_sample = forever\n"
-        "from regolith_studio.__main__ import main\n"
-        "main()\n"
-    )
-    arguments = ["coarsen", str(grains), "-o", str(tmp_path / "out")]
-    child = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments],
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        cwd=ROOT,
-    )
-    end = time.monotonic() + 120
-    while not ready.exists():
-        assert child.poll() is None
-        assert time.monotonic() < end
-        time.sleep(0.05)
-    child.send_signal(getattr(signal, name))
-    out, err = child.communicate(timeout=60)
-    assert child.returncode == code_of_end
-    assert out == ""
-    assert err == "Stopped.\n"
-    assert [path.name for path in tmp_path.iterdir()] == ["ready"]

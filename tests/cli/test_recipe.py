@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.cli.entry import run
-from regolith_studio.coarsening.settings import FACETS_LIMITS
 from regolith_studio.session.outputs.summary import Summary, summary_page
 from regolith_studio.session.recipe import recipe_of
 
@@ -39,35 +38,10 @@ def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
-@pytest.mark.slow
-def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Path, tmp_path: Path) -> None:
-    grain = grains / "grain-c.stl"
-    entries = {"target": "particle", "method": "exact", "stop_at": "error", "largest_error": 0.02}
-    outputs = {"summary": True, "descriptors": False}
-    given_recipe = recipe(tmp_path, grain, **entries, outputs=outputs)
-    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
-    assert "the fewest facets whose errors are all below 2 %" in (tmp_path / "out/summary.html").read_text()
-    common = (grain, "--target", "particle", "--max-error", 2)
-    assert command("coarsen", *common, "-o", tmp_path / "few").code == 0
-    assert (tmp_path / "out/meshes/grain-c.stl").read_bytes() == (tmp_path / "few/grain-c.stl").read_bytes()
-    assert command("dataset", "build", *common, "-o", tmp_path / "set").code == 0
-    for name in ("out/dataset", "set"):
-        metadata = json.loads((tmp_path / name / "dataset.json").read_text())["metadata"]
-        most = FACETS_LIMITS[1]
-        assert (metadata["coarsening"]["n_facets"], metadata["coarsening"]["max_error"]) == (most, 0.02)
-
-
 def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
     given_recipe = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
     assert command("run", given_recipe, "-o", tmp_path / "out", "--seed", 77).code == 0
     assert json.loads((tmp_path / "out" / "recipe.json").read_text())["seed"] == 77
-
-
-def test_that_inputs_are_found_beside_the_recipe(command, grains: Path, tmp_path: Path) -> None:
-    (tmp_path / "here.stl").write_bytes((grains / "grain-a.stl").read_bytes())
-    given_recipe = recipe(tmp_path, grains, inputs=["here.stl"], outputs={"dataset": False, "summary": False})
-    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
-    assert (tmp_path / "out" / "meshes" / "here.stl").exists()
 
 
 def test_that_a_bad_recipe_is_one_sentence(command, grains: Path, tmp_path: Path) -> None:
@@ -146,18 +120,6 @@ def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
     alone = recipe(tmp_path, grains, **whole, outputs=only)
     assert command("run", alone, "-o", tmp_path / "alone", "--jobs", 2).code == 0
     assert tree(tmp_path / "alone" / "dataset") == tree(tmp_path / "ds")
-
-
-def test_that_sizes_can_be_changed_where_each_particle_stands_for_itself(
-    command, grains: Path, tmp_path: Path
-) -> None:
-    each = {"count": 0, "sizes": "log-normal:50,0.4", "name": "all"}
-    given_recipe = recipe(tmp_path, grains, level=4, representatives=each)
-    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
-    shape = ("--method", "quadric", "--l-max", 4, "--facets", 12)
-    sizes = ("--sizes", "log-normal:50,0.4", "--name", "all")
-    assert command("dataset", "build", grains, "-o", tmp_path / "ds", *shape, *sizes).code == 0
-    assert tree(tmp_path / "out" / "dataset") == tree(tmp_path / "ds")
 
 
 def test_that_a_wish_for_the_dataset_that_cannot_be_met_is_refused_before_the_work(

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import tifffile
 import trimesh
 from PIL import Image
 
@@ -66,11 +65,6 @@ def test_that_a_gallery_is_a_picture_and_an_animation_of_all_degrees(
     assert result.json["files"] == ["grain-c_degrees.png", "grain-c_degrees.gif"]
     with Image.open(tmp_path / "g" / "grain-c_degrees.gif") as animation:
         assert animation.n_frames == 5
-
-
-def test_that_a_fit_is_one_file(command, grains: Path, tmp_path: Path) -> None:
-    assert command("fit", grains, "-o", tmp_path / "sample.json", "--l-max", 2).code == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["sample.json"]
 
 
 def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
@@ -209,66 +203,3 @@ def test_that_the_particle_itself_is_imitated_and_compared_with_where_no_target_
     given, written = (np.cbrt(36 * np.pi * mesh.volume**2) / mesh.area for mesh in meshes)
     assert abs(entry["errors"]["sphericity"]) == pytest.approx(abs(written / given - 1), abs=1e-4)
     assert abs(other["errors"]["sphericity"]) != pytest.approx(abs(written / given - 1), abs=1e-4)
-
-
-def test_that_a_particle_that_fails_does_not_stop_the_others(command, grains: Path, tmp_path: Path) -> None:
-    corners = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]
-    faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
-    trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "four.stl")
-    result = command(
-        "coarsen", grains / "grain-a.stl", tmp_path / "four.stl", "-o", tmp_path / "c", "--facets", 20,
-        "--method", "quadric", "--target", "particle", "--json",
-    )  # fmt: skip
-    assert result.code == 1
-    assert [entry["name"] for entry in result.json["particles"]] == ["grain-a"]
-    assert [entry["name"] for entry in result.json["failed"]] == ["four"]
-    assert "four" in result.err
-    assert (tmp_path / "c" / "grain-a.stl").exists()
-
-
-def labels_of_two_balls() -> np.ndarray:
-    z, y, x = np.mgrid[:40, :44, :60]
-    volume = np.zeros(z.shape, dtype=np.uint16)
-    volume[(x - 15) ** 2 + (y - 21) ** 2 + (z - 20) ** 2 < 10**2] = 1
-    volume[(x - 42) ** 2 + (y - 21) ** 2 + (z - 20) ** 2 < 12**2] = 2
-    return volume
-
-
-def test_that_balls_come_out_of_a_label_volume_at_their_size(command, tmp_path: Path) -> None:
-    tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
-    result = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 2.5)
-    assert result.code == 0
-    radii = [
-        (trimesh.load_mesh(path).volume * 3 / 4 / np.pi) ** (1 / 3)
-        for path in sorted((tmp_path / "x").glob("*.stl"))
-    ]
-    assert radii == pytest.approx([25.0, 30.0], rel=0.01)
-    header, *rows = (tmp_path / "x" / "particles.csv").read_text().splitlines()
-    assert "volume [um^3]" in header
-    assert len(rows) == 2
-
-
-def test_that_a_volume_without_voxel_size_asks_for_it(command, tmp_path: Path) -> None:
-    tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
-    result = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x")
-    assert result.code == 1
-    assert "does not state the size of a voxel" in result.err
-
-
-@pytest.mark.parametrize("content", [b"", b"II*\0\x08\0\0\0", b"no picture at all"])
-def test_that_a_broken_volume_is_one_sentence(command, tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "labels.tif").write_bytes(content)
-    result = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 1)
-    assert result.code == 1
-    assert "Traceback" not in result.err
-    assert not (tmp_path / "x").exists()
-
-
-@pytest.mark.slow
-def test_that_a_study_of_l_max_leaves_tables_and_pictures(command, grains: Path, tmp_path: Path) -> None:
-    result = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", "1,4", "--json")
-    assert result.code == 0
-    suffixes = {Path(name).suffix for name in result.json["files"]}
-    assert suffixes == {".csv", ".json", ".png", ".svg"}
-    for name in result.json["files"]:
-        assert (tmp_path / "s" / name).stat().st_size > 0

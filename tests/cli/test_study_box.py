@@ -27,9 +27,3 @@ def test_that_only_the_exact_box_is_kept_to_rounding(command, grains: Path, tmp_
     errors = [float(row["rmsre [%]"]) for row in rows if row["row"] in ASKING]
     assert len(errors) == len(ASKING)
     assert (max(errors) < 1e-4) == met
-
-
-def test_that_an_unknown_box_is_bad_use(command, grains: Path, tmp_path: Path) -> None:
-    result = command("study", "coarsening", grains, "-o", tmp_path, "--box", "round")
-    assert result.code == 2
-    assert "must be one of exact, trimesh" in result.err.replace("\n", " ")

@@ -95,24 +95,6 @@ def throttle(path: str) -> Steps:
         yield Progress(0, 0)
 
 
-class SlowToImport:
-    """An argument that takes a minute to arrive in another process, as if it needed many modules."""
-
-    def __init__(self, path: str) -> None:
-        self.path = path
-
-    def __reduce__(self) -> tuple[object, tuple[str]]:
-        return import_slowly, (self.path,)
-
-
-def import_slowly(path: str) -> int:
-    """Say that it has begun by a file at `path`, and that it has ended by another one."""
-    Path(path).write_text("begun")
-    time.sleep(60)
-    Path(path).with_suffix(".ended").write_text("ended")
-    return 1
-
-
 def sleep_without_steps(path: str) -> Steps:
     """A job whose only step takes a minute; it says that it has begun by a file."""
     yield Started("Sleeping")

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import pytest
 
 from regolith_studio.jobs.events import Event, Finished, Job, Progress, Steps, Stopped
-from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.runners import Pausable
-from regolith_studio.jobs.runners.thread import PauseToken, ThreadRunner
+from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.tasks import Reactions, TaskBoard
 
 HELD = 0.1
@@ -45,37 +44,6 @@ def bench() -> Iterator[Bench]:
     made = Bench()
     yield made
     made.runner.close()
-
-
-def started(token: PauseToken, answers: list[bool]) -> threading.Thread:
-    thread = threading.Thread(target=lambda: answers.append(token.wait_while_paused()))
-    thread.start()
-    return thread
-
-
-def test_that_a_paused_token_blocks_until_it_is_resumed() -> None:
-    token, answers = PauseToken(), list[bool]()
-    assert token.wait_while_paused()
-    token.pause()
-    assert token.paused
-    thread = started(token, answers)
-    thread.join(HELD)
-    assert thread.is_alive()
-    token.resume()
-    thread.join(SECONDS)
-    assert answers == [True]
-
-
-def test_that_who_is_stopped_waits_no_longer() -> None:
-    token, answers = PauseToken(), list[bool]()
-    token.pause()
-    thread = started(token, answers)
-    token.stop()
-    thread.join(SECONDS)
-    assert answers == [False]
-    token.pause()
-    assert not token.paused
-    assert not token.wait_while_paused()
 
 
 def test_that_a_job_in_a_thread_waits_between_two_steps_and_goes_on(bench: Bench) -> None:
@@ -116,31 +84,6 @@ def test_that_a_newer_job_of_the_lane_does_not_wait_for_one_that_is_held_back(be
     bench.runner.submit(Job(bench.count, (2,)), bench.listen, "a")
     assert bench.over.wait(SECONDS)
     assert bench.received[-1] == Finished("counted")
-
-
-def item(number: int) -> Steps:
-    yield Progress(0, 1)
-    return number
-
-
-def test_that_a_batch_is_held_back_between_two_particles(bench: Bench) -> None:
-    def batch(n: int) -> Steps:
-        with_one = Executor(1)
-        for result in with_one.results(Job(item, (number,)) for number in range(n)):
-            if result is not None:
-                yield from bench.count(1)
-        return "all"
-
-    handle = bench.runner.submit(Job(batch, (6,)), bench.listen)
-    bench.allowed.release()
-    bench.reached.get(timeout=SECONDS)
-    handle.pause()
-    bench.allowed.release(5)
-    assert not bench.over.wait(HELD)
-    assert bench.reached.qsize() <= 1
-    handle.resume()
-    assert bench.over.wait(SECONDS)
-    assert bench.received[-1] == Finished("all")
 
 
 def test_that_the_list_of_tasks_tells_what_is_held_back(bench: Bench) -> None:

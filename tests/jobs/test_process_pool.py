@@ -16,7 +16,6 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner
 
 from .small_jobs import (
-    SlowToImport,
     count_until,
     die,
     hold,
@@ -65,14 +64,6 @@ def test_that_a_script_without_a_guarded_part_ends_with_a_sentence(tmp_path: Pat
     )
 
 
-def test_that_a_crew_that_was_lent_is_not_dismissed(pool: ProcessPoolRunner) -> None:
-    executor = Executor(2)
-    executor._runner = pool
-    with open_executor(executor) as lent:
-        assert lent is executor
-    assert list(executor.map(abs, [-5])) == [5]
-
-
 def test_that_one_worker_can_be_stopped_within_a_job() -> None:
     results = Executor(1).results([Job(wait_forever)])
     assert [next(results) for _ in range(3)] == [None] * 3
@@ -100,12 +91,6 @@ def test_that_one_failure_does_not_stop_a_batch(pool: ProcessPoolRunner) -> None
     assert second.sentence == "The number is too green."
     assert isinstance(third, Failed)
     assert fourth == Finished(4)
-
-
-def test_that_the_processes_stay_warm(pool: ProcessPoolRunner) -> None:
-    ids = {e.value for e in in_order(pool, [Job(process_id)] * 12, 2) if isinstance(e, Finished)}
-    assert 1 <= len(ids) <= 2
-    assert os.getpid() not in ids
 
 
 def test_that_a_job_in_a_process_stops_between_two_yields(pool: ProcessPoolRunner) -> None:
@@ -249,20 +234,6 @@ def test_that_a_waiting_job_can_be_cancelled_while_all_processes_are_busy() -> N
     assert busy == [Stopped()]
 
 
-def test_that_a_listener_that_stumbles_does_not_stop_the_pool(
-    pool: ProcessPoolRunner, caplog: pytest.LogCaptureFixture
-) -> None:
-    def stumbling(_event: Event) -> None:
-        raise KeyError("oops")
-
-    pool.submit(Job(square, (1,)), stumbling)
-    assert [e for e in in_order(pool, [Job(square, (2,))], 1) if e] == [Finished(4)]
-    end = time.monotonic() + 60
-    while "A listener" not in caplog.text:  # another process may have been quicker than that of the first job
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
 @pytest.mark.slow
 def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     runner = ProcessPoolRunner(1)
@@ -275,23 +246,6 @@ def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.Monk
     runner.close()
     assert isinstance(result, Failed)
     assert "could not be started" in result.sentence
-
-
-@pytest.mark.slow
-def test_that_closing_waits_for_no_process_that_is_still_importing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("regolith_studio.jobs.runners.process_pool._CLOSE_SECONDS", 300.0)
-    runner, received, begun = ProcessPoolRunner(1), list[Event](), tmp_path / "slow.begun"
-    runner.submit(Job(square, (SlowToImport(str(begun)),)), received.append)
-    end = time.monotonic() + 60
-    while not begun.exists() and time.monotonic() < end:
-        time.sleep(0.01)
-    runner.close()
-    assert begun.exists()
-    assert received == [Stopped()]
-    assert not begun.with_suffix(".ended").exists()
-    assert not runner._workers
 
 
 @pytest.mark.slow

@@ -30,26 +30,6 @@ def test_that_another_control_ends_the_step() -> None:
     assert history.undo() == (1, 0)
 
 
-def test_that_the_same_value_is_no_step() -> None:
-    history = History(0)
-    history.push(0)
-    assert not history.can_undo
-
-
-def test_that_a_new_value_forgets_what_was_undone() -> None:
-    history = History(0)
-    history.push(1)
-    history.undo()
-    history.push(2)
-    assert not history.can_redo
-
-
-def test_that_undo_at_the_beginning_and_redo_at_the_end_change_nothing() -> None:
-    history = History(5)
-    assert history.undo() == 5
-    assert history.redo() == 5
-
-
 def test_that_old_steps_are_forgotten() -> None:
     history = History(0, limit=3)
     for value in range(1, 10):

@@ -1,6 +1,5 @@
 """No name leads a writer out of the folder that it was given, and the name itself stays in the tables."""
 
-import ast
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -39,7 +38,6 @@ from tests.dataset.example import entry
 
 BALL = icosphere(2)
 GRAIN = Mesh(BALL.vertices * [30.0, 20.0, 15.0], BALL.faces)
-PACKAGE = Path(__file__).resolve().parents[2] / "regolith_studio"
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
 NAMES = ("../../escaped", "{outside}/absolute", "CON", "", "a\\..\\b", "A", "b", "x" * 300, "=1+1", "n\nl")
 
@@ -147,22 +145,6 @@ def test_that_a_project_is_written_where_it_was_named(output: Path) -> None:
     recipe = Recipe.model_validate({"particles": [{"name": "bead-1", "called": "../../escaped"}]})
     Project(recipe=recipe, selected="../../escaped", page="../../escaped").save(output / "p.regolith")
     assert [path.name for path in output.iterdir()] == ["p.regolith"]
-
-
-@pytest.mark.slow
-def test_that_files_whose_names_are_computed_are_written_at_one_place() -> None:
-    """``write_in_stage`` checks names; other ways of writing are for names that are known in the source."""
-    ways = {"write_bytes", "write_text", "staged_file"}
-    computed = []
-    for path in sorted(PACKAGE.rglob("*.py")):
-        for call in (each for each in ast.walk(ast.parse(path.read_text())) if isinstance(each, ast.Call)):
-            name = getattr(call.func, "attr", getattr(call.func, "id", ""))
-            if name not in ways:
-                continue
-            place = call.func.value if isinstance(call.func, ast.Attribute) else call.args[0]
-            if any(isinstance(each, ast.JoinedStr) for each in ast.walk(place)):
-                computed.append(f"{path.relative_to(PACKAGE)}:{call.lineno}")
-    assert computed == []
 
 
 def test_that_a_mesh_keeps_the_name_of_its_file(tmp_path: Path) -> None:

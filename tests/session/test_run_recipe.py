@@ -99,13 +99,6 @@ def test_that_workers_and_chunks_change_no_byte(
     assert digests(found.folder) == alone[1]
 
 
-@pytest.mark.slow
-def test_that_four_workers_change_no_byte(
-    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
-) -> None:
-    assert digests(done(recipe(grains), grains, tmp_path / "out", 4).folder) == alone[1]
-
-
 @pytest.mark.parametrize(
     "after",
     [
@@ -200,20 +193,6 @@ def killed(given_recipe: Path, folder: Path, records: int) -> None:
                 process.send_signal(signal.SIGKILL)
                 break
             time.sleep(0.001)
-
-
-@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
-@pytest.mark.slow
-def test_that_a_run_killed_again_and_again_ends_with_the_same_bytes(
-    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
-) -> None:
-    given_recipe = tmp_path / "recipe.json"
-    given_recipe.write_text(recipe(grains).to_json())
-    for records in (2, 7):
-        killed(given_recipe, tmp_path / "out", records)
-    assert n_records(tmp_path / "out" / "journal" / "checkpoint.sqlite") >= 7
-    done(recipe(grains), tmp_path, tmp_path / "out", resume=True)
-    assert digests(tmp_path / "out") == alone[1]
 
 
 def test_that_a_run_that_has_ended_is_not_done_again(grains: Path, tmp_path: Path) -> None:

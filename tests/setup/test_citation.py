@@ -11,19 +11,6 @@ from regolith_studio.ui.dialogs.help import PAPER
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-REQUIRED = {"authors", "cff-version", "message", "title"}
-OPTIONAL = {
-    *("abstract", "commit", "contact", "date-released", "doi", "identifiers", "keywords", "license"),
-    *("license-url", "preferred-citation", "references", "repository", "repository-artifact"),
-    *("repository-code", "type", "url", "version"),
-}
-
-
-def test_that_the_citation_has_the_keys_of_the_format() -> None:
-    assert CITATION["cff-version"] == "1.2.0"
-    assert REQUIRED <= CITATION.keys() <= REQUIRED | OPTIONAL
-    for reference in CITATION["references"]:
-        assert {"authors", "title", "type"} <= reference.keys()
 
 
 def test_that_the_citation_is_of_this_version_under_its_licence() -> None:

@@ -29,7 +29,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 INDENTED = re.compile(r"(?:^    regolith-studio .*\n)+", re.MULTILINE)
 SPAN = re.compile(r"`regolith-studio ([a-z][^`]*)`")
-ELSEWHERE = ("SLURMCluster", "on_cluster", ">>> ", "simulate_repose")
+ELSEWHERE = ("on_cluster", ">>> ", "simulate_repose")
 """Code that needs a cluster, and exercises and heaps, which are tested by themselves."""
 SHORT = ("README.md",)
 """Pages whose commands are run, in the folder of the fixture."""
