@@ -57,18 +57,23 @@ class ScaleBar:
     ) -> None:
         self._renderer = plotter.renderer
         self._line = pv.PolyData()
-        self._factor = factor
         self.suspended = False
-        self._bar = flat_actor(self._line, 2.0 * factor)
+        self._bar = flat_actor(self._line)
         self._label = vtkTextActor()
-        self._label.GetTextProperty().SetFontSize(round(12 * factor))
+        self._shown: tuple[float, ...] = ()
+        self.set_factor(factor)
         self._label.GetTextProperty().SetFontFamilyToArial()
         self._label.GetTextProperty().SetJustificationToCentered()
         self.set_ink(surroundings)
         self._renderer.AddViewProp(self._bar)
         self._renderer.AddViewProp(self._label)
-        self._shown: tuple[float, ...] = ()
         self._tag = before_each_picture(self._renderer, self)
+
+    def set_factor(self, factor: float) -> None:
+        """Change the size of text and line."""
+        self._factor, self._shown = factor, ()
+        self._bar.GetProperty().SetLineWidth(2.0 * factor)
+        self._label.GetTextProperty().SetFontSize(round(12 * factor))
 
     def set_ink(self, surroundings: ThemeColors) -> None:
         """Draw with another ink."""

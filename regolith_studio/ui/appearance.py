@@ -2,7 +2,7 @@
 
 import base64
 import binascii
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, cast
 
 from PySide6.QtCore import QByteArray, QObject, QSignalBlocker, QSize, Signal
@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QMainWindow,
     QSpinBox,
     QSplitter,
+    QToolBar,
     QVBoxLayout,
     QWidget,
 )
@@ -41,6 +42,8 @@ STANDARD_SIZE = (1480, 900)
 FRAME = QSize(8, 40)
 """Pixels that window managers add to the size of a window for its title and borders, at most."""
 EQUAL = 1000
+NO_LIMIT = (1 << 24) - 1
+"""Qt's maximum height of a widget that has none."""
 
 
 class WindowState:
@@ -91,6 +94,14 @@ def restore_borders(window: QWidget) -> None:
     """Give the borders between the parts of all pages the places of a new window."""
     for splitter in window.findChildren(QSplitter):
         splitter.setSizes(splitter.property(STANDARD_SIZES) or [EQUAL] * splitter.count())
+
+
+def show_bars(window: QMainWindow, others: Sequence[QWidget], *, shown: bool) -> None:
+    """Show or hide the bars of a window: on a full screen there is only the page."""
+    for bar in (*window.findChildren(QToolBar), *others):
+        bar.setVisible(shown)
+    # the shortcuts of a menu bar that is hidden are not heard
+    window.menuBar().setMaximumHeight(NO_LIMIT if shown else 0)
 
 
 def room_on_screen(window: QMainWindow) -> QSize:

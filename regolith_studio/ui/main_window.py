@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import cast
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import QEvent, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QGuiApplication
 from PySide6.QtWidgets import QApplication, QMainWindow
 
@@ -14,7 +14,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions, CommandPalette
 from regolith_studio.ui.activity import ActivityDock, TasksPanel
-from regolith_studio.ui.appearance import STANDARD_SIZE, Appearance, WindowState
+from regolith_studio.ui.appearance import STANDARD_SIZE, Appearance, WindowState, show_bars
 from regolith_studio.ui.batch_runs import BatchRuns, ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
@@ -159,6 +159,11 @@ class MainWindow(QMainWindow):
         apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.scroll_areas)
         for part in (self.menus, self.pages, self.tasks):
             part.set_theme(theme)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.WindowStateChange:
+            show_bars(self, (self.pages.sidebar, self.statusBar()), shown=not self.isFullScreen())
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if any(url.isLocalFile() for url in event.mimeData().urls()):

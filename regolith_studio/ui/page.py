@@ -317,6 +317,7 @@ class PageStack(QWidget):
         self._stack = QStackedWidget()
         self._scroll_areas: dict[str, ScrollablePage] = {}
         self._bar = Sidebar(self.pages)
+        self.sidebar = scrolled(self._bar, whole_width=True)
         self.buttons = self._bar.buttons
         self._bar.chosen.connect(self.go)
         self._arrange()
@@ -410,5 +411,5 @@ class PageStack(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
-        row.addWidget(scrolled(self._bar, whole_width=True))
+        row.addWidget(self.sidebar)
         row.addWidget(self._stack, 1)

@@ -150,6 +150,13 @@ def test_that_space_plays_and_arrows_step_on_the_page(page):
 
 
 @pytest.mark.slow
+def test_that_the_page_fills_the_screen_and_escape_ends_it(page):
+    page.commands()["full_screen"]()
+    assert page.isFullScreen()
+    QTest.keyClick(page, Qt.Key.Key_Escape)
+    assert not page.isFullScreen()
+
+
 def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
     before = page.annealing._lesson.steps
     page.commands()["another"]()

@@ -9,7 +9,7 @@ from psygnal import EmitLoopError
 from PySide6.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QSlider
+from PySide6.QtWidgets import QApplication, QSlider, QToolBar
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
@@ -340,3 +340,14 @@ def test_that_no_display_is_said_in_one_sentence():
     check_display({}, "darwin")
     with pytest.raises(MissingRequirement, match=r"no display .* demo"):
         check_display({}, "linux")
+
+
+def test_that_a_full_screen_has_no_bars_but_hears_the_keys_of_the_menus(window, wait):
+    window.show()
+    bars = (*window.findChildren(QToolBar), window.statusBar(), window.pages.sidebar)
+    window.setWindowState(Qt.WindowState.WindowFullScreen)
+    wait(lambda: not any(bar.isVisible() for bar in bars))
+    assert window.menuBar().height() == 0
+    assert window.menuBar().isVisible(), "else its shortcuts would not be heard"
+    window.setWindowState(Qt.WindowState.WindowNoState)
+    wait(lambda: all(bar.isVisible() for bar in bars) and window.menuBar().height() > 0)

@@ -60,6 +60,10 @@ class ImageView(QWidget):
         self._scale_bar.set_ink(surroundings)
         self._ask()
 
+    def set_font_factor(self, factor: float) -> None:
+        self._scale_bar.set_factor(factor)
+        self._ask()
+
     def picture(self) -> Picture:
         self._render()
         image = self._image

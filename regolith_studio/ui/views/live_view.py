@@ -117,6 +117,10 @@ class LiveView(QWidget):
         self._scale_bar.set_ink(surroundings)
         self._canvas.update()
 
+    def set_font_factor(self, factor: float) -> None:
+        self._scale_bar.set_factor(factor)
+        self._canvas.update()
+
     def picture(self) -> Picture:
         image = self._canvas.grabFramebuffer()
         image = image.convertToFormat(image.Format.Format_RGB888)

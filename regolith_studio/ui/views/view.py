@@ -209,6 +209,10 @@ class SceneView(Protocol):
         """Change background and inks."""
         ...
 
+    def set_font_factor(self, factor: float) -> None:
+        """Change the size of the scale bar."""
+        ...
+
     def picture(self) -> Picture:
         """What the view shows now, shape (height, width, 3)."""
         ...
@@ -305,6 +309,9 @@ class CameraLink:
 _PADDING = 9
 _BESIDE = 8
 """Pixels of the frame and beside the box of partners."""
+
+_DEFAULT_PIXELS = 12
+"""Height of the letters for which scale bars have their usual size."""
 
 
 class ViewFrame(QFrame):
@@ -419,6 +426,7 @@ class ViewFrame(QFrame):
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._choose_title()
+            self.view.set_font_factor(self.fontInfo().pixelSize() / _DEFAULT_PIXELS)
 
     def _choose_title(self) -> None:
         """The longest title that there is room for; the shortest with dots where there is none."""

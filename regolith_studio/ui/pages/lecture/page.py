@@ -92,12 +92,19 @@ class LecturePage(PageWidget):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Space plays and arrows step wherever no control of the page takes them."""
         name = PLAYING_KEYS.get(event.key())
+        if event.key() == Qt.Key.Key_Escape and self.window().isFullScreen():
+            name = "full_screen"
         if name is None or event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier:
             super().keyPressEvent(event)
         else:
             self.commands()[name]()
 
     def on_hide(self) -> None:
+        if self.window().isFullScreen():
+            self.toggle_full_screen()
+        self._pause()
+
+    def _pause(self) -> None:
         for lesson in (self.annealing, self.degrees):
             lesson.playback.pause()
 
@@ -142,12 +149,9 @@ class LecturePage(PageWidget):
         self._show_font_size()
 
     def toggle_full_screen(self) -> None:
-        """Toggle full screen."""
+        """Fill the screen with the page, without bars, or end that."""
         window = self.window()
-        if window.isFullScreen():
-            window.showNormal()
-        else:
-            window.showFullScreen()
+        window.setWindowState(window.windowState() ^ Qt.WindowState.WindowFullScreen)
 
     # --- filling -------------------------------------------------------------------------------
 
@@ -240,7 +244,7 @@ class LecturePage(PageWidget):
             self._session.select(self.particle.value())
 
     def _turn(self) -> None:
-        self.on_hide()
+        self._pause()
         self._fill()
 
     def _control_playback(self, action: Callable[[PlaybackBar], object]) -> None:
