@@ -21,7 +21,7 @@ from regolith_studio.cli.options import (
 )
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
-from regolith_studio.session.report.sections import ReportSettings
+from regolith_studio.session.report.settings import ReportSettings
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh

@@ -34,11 +34,11 @@ from regolith_studio.session.report.sections import (
     ReportDraft,
     ReportFigure,
     ReportSection,
-    ReportSettings,
     SectionSteps,
     error_table,
     interval_text,
 )
+from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import (
     DOCUMENT,
     MAX_TRIANGLES,

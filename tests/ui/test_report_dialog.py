@@ -12,7 +12,8 @@ from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.report import write
-from regolith_studio.session.report.sections import ReportSection, ReportSettings
+from regolith_studio.session.report.sections import ReportSection
+from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.session import Session
 from regolith_studio.ui.batch_runs import ReportRuns
 from regolith_studio.ui.bindings import Bindings

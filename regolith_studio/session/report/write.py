@@ -31,13 +31,8 @@ from regolith_studio.session.report.heap_sections import (
     show_parameters,
     simulate_heap,
 )
-from regolith_studio.session.report.sections import (
-    TITLE,
-    ReportDraft,
-    ReportSection,
-    ReportSettings,
-    SectionSteps,
-)
+from regolith_studio.session.report.sections import TITLE, ReportDraft, ReportSection, SectionSteps
+from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.shape_sections import (
     compare_degrees,
     compare_population,

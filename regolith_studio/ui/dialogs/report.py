@@ -14,7 +14,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.report.sections import ReportSettings
+from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import PAGE, SectionBegun
 from regolith_studio.ui.dialogs.batch import RunDialog
 from regolith_studio.ui.translation import tr, tr_count
