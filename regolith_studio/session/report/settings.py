@@ -68,7 +68,7 @@ class ReportSettings:
 
     def __post_init__(self) -> None:
         from regolith_studio.dem.angle_of_repose import check_number
-        from regolith_studio.dem.evaluation.settings import EvaluationSettings
+        from regolith_studio.dem.evaluation import EvaluationSettings
 
         check_settings(self)
         _ = self.choices
