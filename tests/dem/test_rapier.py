@@ -20,7 +20,6 @@ from regolith_studio.dem.engine_process import run_task
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.rapier.simulation import RapierSolver, inner_parallel_body
 from regolith_studio.dem.evaluation import EvaluationSettings
-from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.lifting_cylinder import N_WALLS, LiftingSettings, SubstepSettings
 from regolith_studio.dem.run_io import read_run, snapshot_files
 from regolith_studio.dem.separation import overlap_depths
@@ -96,24 +95,6 @@ def test_that_a_column_of_boxes_stands(boxes: Dataset) -> None:
     assert solver.points[-1, 2] == pytest.approx(tops[-1] - half[-1], rel=3e-3)
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.3, 0.6, 0.9])
-def test_that_a_ball_rebounds_with_the_restitution_that_is_set(boxes: Dataset, restitution: float) -> None:
-    contact = ContactParameters(restitution=restitution)
-    case = ReposeCase(TEST, contact, n_particles=10, shapes="spheres")
-    solver = RapierSolver(prepare(boxes, case), SubstepSettings())
-    place(solver, np.column_stack([1.5 * np.arange(10) - 7.0, np.zeros(10), np.full(10, 5.5)]))
-    solver.begin("rest")
-    before = 0.0
-    for _ in range(200):
-        solver.advance(0.025, 1)
-        after = float(np.mean([body.linvel.z for body in solver.particles]))
-        if after > 0.5 * before:
-            break
-        before = after
-    rebound = float(np.max([body.linvel.z for body in solver.particles]))
-    assert max(rebound, 0.0) / -before == pytest.approx(restitution, abs=0.02)
-
-
 def test_that_no_particle_gets_between_the_boxes_of_the_wall(boxes: Dataset) -> None:
     """Balls thrown at the corners of the ring."""
     case = ReposeCase(TEST, n_particles=N_WALLS, shapes="spheres")
@@ -156,28 +137,6 @@ def test_that_overlaps_are_those_of_the_places_and_not_of_the_last_step(boxes: D
     points[2, 2] = half[2] - 0.1
     place(solver, points)
     assert solver.overlaps() == pytest.approx([0.1, 0.1], abs=1e-5)
-
-
-def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset) -> None:
-    solver = solver_of(boxes, n=40)
-    prepared = solver.prepared
-    volumes = np.pi / 6 * (prepared.diameters / prepared.mean_diameter) ** 3
-    assert [body.mass for body in solver.particles] == pytest.approx(volumes.tolist(), rel=1e-5)
-    edges = np.array([[1, 1, 1], np.array([3, 2, 1.5]) / 9 ** (1 / 3)])[prepared.class_index]
-    squares = (edges * (volumes ** (1 / 3))[:, None]) ** 2
-    inertia = volumes[:, None] / 12 * (squares.sum(axis=1)[:, None] - squares)
-    found = [body.mass_properties.principal_inertia.to_tuple() for body in solver.particles]
-    assert np.sort(found, axis=1) == pytest.approx(np.sort(inertia, axis=1), rel=1e-5)
-
-
-def test_that_particles_begin_as_the_initial_packing_has_them(boxes: Dataset) -> None:
-    solver = solver_of(boxes, n=60)
-    from regolith_studio.dem.initial_packing import loose_column
-
-    column = loose_column(solver.prepared)
-    assert solver.points == pytest.approx(column.points / solver.prepared.mean_diameter, rel=1e-5, abs=1e-5)
-    assert solver.orientations == pytest.approx(column.orientations, abs=1e-6)
-    assert solver.top >= (solver.points[:, 2] + enclosing_radii(solver.prepared) / solver.unit_length).max()
 
 
 def finish(steps: Generator[Snapshot, None, SimulationResult]) -> tuple[SimulationResult, list[EngineState]]:

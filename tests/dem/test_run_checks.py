@@ -6,11 +6,7 @@ import pytest
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import check_run, measure_filling
-from regolith_studio.dem.engines import ENGINES
-from regolith_studio.dem.lifting_cylinder import LiftingRun, mean_energies
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.dem.verification.bodies import cuboid, scene
-from regolith_studio.dem.verification.certificate import verifiable_engine
 
 SOUND = {
     "energy_gain": 0.0,
@@ -28,22 +24,6 @@ def test_that_a_sound_run_has_nothing_to_say() -> None:
     assert (checks.particles_in, checks.particles_out) == (2, 2)
     assert (checks.mean_overlap, checks.max_overlap) == pytest.approx((0.002, 0.003))
     assert check_run(np.array([0.5]), np.empty(0), **SOUND).mean_overlap == 0.0
-
-
-@pytest.mark.parametrize("key", ["mujoco", "rapier", "box3d"])
-def test_that_energies_of_a_run_are_in_m_g_d(key: str) -> None:
-    """Bodies at 30 d that fall for sqrt(d/g): 30 m g d before, and 1/2 m g d of motion."""
-    if not ENGINES[key].find().there:
-        pytest.skip(f"{key} is not installed")
-    prepared, engine = scene([cuboid(1, 1, 1)], 0.5, 2), verifiable_engine(key)
-    settings = engine.Settings()
-    run = LiftingRun(prepared, settings, engine.solver(prepared, settings))
-    run.solver.begin("rest")
-    run.solver.place(np.array([[0.0, 0.0, 30.0], [9.0, 0.0, 30.0]]), np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
-    run.solver.advance(0.01, 100)
-    potential, kinetic = mean_energies(run)
-    assert kinetic == pytest.approx(0.5, rel=0.03)
-    assert potential + kinetic == pytest.approx(30.0, rel=1e-3)
 
 
 def test_that_every_failed_check_is_a_sentence() -> None:

@@ -77,13 +77,6 @@ def measured(measure: Any, engine: Any) -> MeasuredLine:
     return line
 
 
-@pytest.mark.parametrize("key", ["mujoco", "rapier", "box3d"])
-def test_that_sliding_bodies_of_an_engine_feel_the_friction_within_two_percent(key: str) -> None:
-    if ENGINES[key].find().there:
-        assert measured(scenes.sliding, ENGINES[key]).passed
-        assert key == "mujoco" or measured(scenes.incline, ENGINES[key]).passed
-
-
 def test_that_an_exact_friction_passes_at_the_finest_angle() -> None:
     line = measured(scenes.incline, CoulombEngine())
     assert line.passed
