@@ -17,9 +17,9 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_d
 from regolith_studio.dem.case import PreparedCase, ReposeCase, scaling_report
 from regolith_studio.dem.drum_angle import DrumMeasurement, drum_document
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
+from regolith_studio.dem.engines import engine_notes
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, packing_document
-from regolith_studio.dem.shipped_certificates import engine_notes
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray

@@ -9,10 +9,9 @@ from typing import Any, cast
 import numpy as np
 
 from regolith_studio.dem.angle_of_repose import measure_repose
-from regolith_studio.dem.engines import ENGINES, engine_named
+from regolith_studio.dem.engines import ENGINES, engine_named, engine_notes
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import read_final_state
-from regolith_studio.dem.shipped_certificates import engine_notes
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle

@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull
 
 from regolith_studio.cli.repose import certificate_in_words
 from regolith_studio.cli.terminal import print_json
-from regolith_studio.dem import shipped_certificates
+from regolith_studio.dem import engines
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.lifting_cylinder import SubstepSettings
@@ -178,13 +178,11 @@ def test_that_an_angle_comes_with_the_lines_that_its_engine_fails(monkeypatch: p
     version = engine.find().version
     lines = [{"key": "half_step", "passed": False}, {"key": "rest", "passed": True}]
     known: dict[str, Any] = {"rapier": {"version": version, "lines": lines}}
-    monkeypatch.setattr(shipped_certificates, "shipped_certificates", lambda: known)
-    assert shipped_certificates.engine_notes(engine) == [
+    monkeypatch.setattr(engines, "shipped_certificates", lambda: known)
+    assert engines.engine_notes(engine) == [
         "Rapier does not pass these lines of its verification: half step."
     ]
     known["rapier"] |= {"version": "0.1", "lines": []}
-    assert shipped_certificates.engine_notes(engine) == [
-        f"Rapier was verified in version 0.1, not in {version}."
-    ]
+    assert engines.engine_notes(engine) == [f"Rapier was verified in version 0.1, not in {version}."]
     del known["rapier"]
-    assert shipped_certificates.engine_notes(engine) == ["Rapier was not verified."]
+    assert engines.engine_notes(engine) == ["Rapier was not verified."]
