@@ -1,6 +1,5 @@
 """Broken datasets: each is refused with one sentence that names the place."""
 
-import contextlib
 import hashlib
 import json
 import os
@@ -12,7 +11,7 @@ import pytest
 
 from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
-from regolith_studio.errors import DatasetError, RegolithError
+from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.triangles import stl_bytes
 
@@ -138,15 +137,11 @@ TEXTS = {
         "inf at representatives[0].weight",
     ),
     "infinity": (lambda text: text.replace('"weight": 0.5', '"weight": -Infinity', 1), "-Infinity at"),
-    "overflow": (
-        lambda text: text.replace('"weight": 0.5', '"weight": 1e999', 1),
-        "representatives[0].weight",
-    ),
     "duplicate key": (
         lambda text: text.replace('"weight": 0.5', '"weight": 0.5, "weight": 0.5', 1),
         "the key 'weight' twice at representatives[0]",
     ),
-    "above l<sub>max</sub>": (lambda text: text[: len(text) // 2], "is not JSON"),
+    "half of it": (lambda text: text[: len(text) // 2], "is not JSON"),
     "empty": (lambda _: "", "is not JSON"),
     "a list": (lambda _: "[]", "not a dataset"),
     "deep": (lambda _: "[" * 100_000, "nests too deeply"),
@@ -227,19 +222,3 @@ def test_that_validation_counts_facets(folder: Path) -> None:
 def test_that_validation_misses_a_readme(folder: Path) -> None:
     (folder / "README.txt").unlink()
     assert validate_dataset(folder) == ["README.txt is missing."]
-
-
-def test_that_random_damage_to_the_document_never_escapes_as_another_error(
-    sound: Path, tmp_path: Path
-) -> None:
-    folder = Path(shutil.copytree(sound, tmp_path / "set"))
-    original = (sound / "dataset.json").read_bytes()
-    generator = np.random.default_rng(0)
-    for _ in range(400):
-        damaged = bytearray(original)
-        for _ in range(generator.integers(1, 4)):
-            damaged[generator.integers(len(damaged))] = generator.integers(256)
-        (folder / "dataset.json").write_bytes(bytes(damaged))
-        with contextlib.suppress(RegolithError):
-            read_dataset(folder)
-        assert isinstance(validate_dataset(folder), list)

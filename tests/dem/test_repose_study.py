@@ -1,10 +1,7 @@
 """A study of the angle of repose is one result: replaced as a whole, resumed from its journal."""
 
 import json
-import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -28,10 +25,9 @@ from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import ReposeVariant, study_repose
 from regolith_studio.studies.figures import repose as figures
-from tests.dem.interrupted_study import SMALL, instant_engine, write_figure
+from tests.dem.instant_engine import SMALL, instant_engine, write_figure
 from tests.dem.packings import cone
 
-ROOT = Path(__file__).resolve().parents[2]
 RUNS = ["static_friction_0.2_seed0", "static_friction_0.8_seed0"]
 
 
@@ -210,12 +206,3 @@ def test_that_a_surface_is_refused_before_any_run(
     assert run([*words, "--against", keys]) == 2
     assert sentence in " ".join(capsys.readouterr().err.replace("│", " ").split())
     assert not (tmp_path / "study").exists()
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(os.name == "nt", reason="processes are forked")
-def test_that_an_interrupted_study_leaves_the_earlier_one_or_the_new_one(tmp_path: Path) -> None:
-    """One line of code in 25 that the study reaches, with and without a second interruption."""
-    words = [sys.executable, "-m", "tests.dem.interrupted_study", str(tmp_path), "25"]
-    ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=900, check=False)
-    assert (ended.returncode, ended.stderr, ended.stdout) == (0, "", "")

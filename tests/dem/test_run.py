@@ -3,7 +3,6 @@
 import hashlib
 import json
 import shutil
-import subprocess
 import sys
 import time
 from dataclasses import replace
@@ -46,7 +45,6 @@ from regolith_studio.jobs.repose_jobs import (
     check_prepared,
     measure_result,
     repose_steps,
-    simulate_prepared,
 )
 from regolith_studio.jobs.repose_study import (
     ReposeStudyRequest,
@@ -231,18 +229,6 @@ def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, t
     fresh.close()
 
 
-def test_that_a_wish_of_the_window_is_the_same_study(
-    finished: Path, boxes_folder: Path, tmp_path: Path
-) -> None:
-    shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
-    request = ReposeStudyRequest("static_friction", (0.8,), ORDER, boxes_folder)
-    events = list(run_repose_study(request, tmp_path))
-    assert not [step for step in events if isinstance(step, Progress) and "simulated" in step.message]
-    assert {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")} <= {
-        path.name for path in tmp_path.iterdir()
-    }
-
-
 @pytest.mark.slow
 def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
     """A dataset a value, coarsened to it; the runs are not waited for."""
@@ -311,19 +297,6 @@ def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, t
     assert [summary.angle for summary in find_runs(tmp_path)] == [None]
 
 
-@pytest.mark.slow
-def test_that_a_run_that_cannot_write_says_so(boxes_folder: Path, tmp_path: Path) -> None:
-    prepared = prepare(read_dataset(boxes_folder), CASE)
-    steps = simulate_prepared(
-        prepared, tmp_path / "run", replace(ORDER, settings=replace(QUICK, snapshots=500))
-    )
-    _until_moment(steps)
-    (stage,) = tmp_path.glob(".run.*.regolith-new")
-    shutil.rmtree(stage / "snapshots")
-    with pytest.raises(EngineError, match="could not go on"):
-        list(steps)
-
-
 def test_that_a_folder_is_not_overwritten_unless_asked(boxes_folder: Path, tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(FileError, match=r"other files \(mine.txt\)"):
@@ -345,20 +318,6 @@ def test_that_a_stopped_run_replaces_no_finished_one(
     steps.close()
     assert read_run(tmp_path / "run").document == read_run(finished).document
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
-
-
-def test_that_a_second_run_into_a_folder_is_one_sentence(boxes_folder: Path, tmp_path: Path) -> None:
-    holder = "from pathlib import Path; from regolith_studio.io.output_lock import output_lock\n"
-    holder += f"with output_lock(Path({str(tmp_path / 'run')!r})): print('locked', flush=True); input()"
-    with subprocess.Popen(
-        [sys.executable, "-c", holder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    ) as other:
-        assert other.stdout is not None
-        assert other.stdout.readline() == "locked\n"
-        with pytest.raises(FileError, match="Another process is writing to"):
-            list(repose_steps(boxes_folder, tmp_path / "run", ORDER))
-        other.communicate("\n")
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[str]) -> None:

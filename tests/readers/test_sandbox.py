@@ -102,20 +102,6 @@ def test_that_a_file_that_needs_too_much_memory_is_refused(tmp_path, stl):
     sandbox.close()
 
 
-@pytest.mark.parametrize("kind", ["absent", "folder", "pipe", "unreadable name"])
-def test_that_what_is_no_file_is_refused_without_being_opened(kind, tmp_path, sandbox):
-    path = tmp_path / "thing.stl"
-    if kind == "folder":
-        path.mkdir()
-    elif kind == "pipe":
-        os.mkfifo(path)
-    elif kind == "unreadable name":
-        path = Path("a\0b.stl")
-    with pytest.raises(FileError):
-        sandbox.request("mesh", path)
-    assert sandbox._process is None
-
-
 def test_that_a_file_above_two_gibibytes_is_refused_before_it_is_read(tmp_path, sandbox):
     path = tmp_path / "huge.stl"
     with path.open("wb") as file:

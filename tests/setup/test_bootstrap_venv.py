@@ -103,16 +103,6 @@ def test_that_packages_are_installed_with_the_pins_and_the_program_editable(
     assert not bootstrap.UNFINISHED.exists()
 
 
-@pytest.mark.parametrize("never_written", [True, False])
-def test_that_bytecode_is_compiled_ahead_only_where_it_is_never_written_later(
-    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, never_written: bool
-) -> None:
-    pip = installing(bootstrap, monkeypatch, 0)
-    monkeypatch.setattr(bootstrap.sys, "dont_write_bytecode", never_written)
-    bootstrap.set_up("")
-    assert ("--no-compile" in pip.commands[0]) is not never_written
-
-
 def test_that_an_interrupted_installation_leaves_a_mark_and_is_made_anew(
     bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -96,13 +96,6 @@ def test_that_every_dependency_is_pinned() -> None:
     assert names - {PROJECT["name"]} <= pins
 
 
-def test_that_the_guide_states_the_licence_of_every_dependency() -> None:
-    guide = (ROOT / "docs" / "installing.md").read_text(encoding="utf-8")
-    rows = [line.split("|")[2] for line in guide.partition("## Licences")[2].splitlines() if "|" in line]
-    explained = {name.strip() for row in rows for name in row.split(",")}
-    assert {line.split(">")[0] for line in PROJECT["dependencies"]} <= explained
-
-
 @pytest.mark.slow
 def test_that_the_source_archive_holds_the_checkout_but_for_the_files_of_its_services(source: Path) -> None:
     if not (ROOT / ".git").exists():
