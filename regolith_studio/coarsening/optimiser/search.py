@@ -53,8 +53,10 @@ TIE_BREAK_PRICE = 1e-2
 """Price of the overlap where it has none: shapes that only meet descriptors drift away from the particle."""
 FREE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 60, 30, 120
 """On the overlap alone, on the whole loss, after half-spaces became cuts, and of the best at the end."""
-CONTINUATIONS = 3
-"""Descents that have not met all by then go on so often, with a new metric: most are still on the way."""
+CONTINUATIONS, SHORTER, NEARLY_MET = 3, (0.1, 2e-3, 2e-3, 2e-3, 2e-3), 1e-3
+"""Descents that have not met all by then go on so often, with a new metric: most are still on the way. Those
+that miss no more than the last go on with first moves shorter by these factors: vertices of the box are so
+close."""
 GROWTH_STEPS = 25
 """After each stage of cuts on the way from few half-spaces to many."""
 ROUND_STARTS = ("round", "round", "grouped")
@@ -362,10 +364,10 @@ class Search:
             self._free_distance = min(self._free_distance, distance)
             start = HalfSpaces(planes[0], planes[1])
         found = self._descended(start, STEPS, FIRST_RADIUS, held=held)
-        for _ in range(CONTINUATIONS):
-            if found is None or found.met:
+        for share in (*[1.0] * CONTINUATIONS, *SHORTER):
+            if found is None or found.met or (share < 1.0 and found.worst > NEARLY_MET):
                 break
-            found = self._descended(found.half_spaces, STEPS, FURTHER_RADIUS, held=held) or found
+            found = self._descended(found.half_spaces, STEPS, share * FURTHER_RADIUS, held=held) or found
         return self._settled(found, held)
 
     def _grown(self, few: Candidate) -> Candidate | None:
@@ -460,7 +462,9 @@ class Search:
         size = len(offsets)
         if size not in self._memory:
             self._memory[size] = memory_for(size, len(self._rays.directions))
-        axes, memory = self._target.box.axes if axes is None else axes, self._memory[size]
+        memory = self._memory[size]
+        # a copy: for an array that is locked numba would compile the descent once more
+        axes = np.array(self._target.box.axes if axes is None else axes)
         return descend(
             self._rays,
             prices,
