@@ -191,7 +191,7 @@ def measure(
     document = {"file": str(file), "length_unit": "m"} | measurement_document(measurement)
     if output is not None:
         from regolith_studio.io.atomic import staged_folder
-        from regolith_studio.io.json_text import json_bytes
+        from regolith_studio.io.own_files import json_bytes
         from regolith_studio.studies.figures.repose import write_section_figure
 
         with staged_folder(output, "repose") as stage:

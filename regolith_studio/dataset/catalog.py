@@ -13,7 +13,7 @@ from regolith_studio.dataset.schema import CoarseningRecord, DatasetDocument
 from regolith_studio.dataset.serialization import shape_of
 from regolith_studio.errors import DatasetError, RegolithError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.io.json_text import parse_strict_json
+from regolith_studio.io.own_files import parse_strict_json
 from regolith_studio.messages import N_
 
 RESULT = "repose.json"

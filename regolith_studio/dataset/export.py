@@ -17,7 +17,7 @@ from regolith_studio.dataset.settings import ExportSettings
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
 from regolith_studio.io.atomic import exchange, filled_folder, recover_folder
-from regolith_studio.io.json_text import canonical_json, parse_strict_json
+from regolith_studio.io.own_files import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
 from regolith_studio.settings import setting

@@ -35,7 +35,7 @@ from regolith_studio.dataset.size_distributions import normalised_shares
 from regolith_studio.errors import DatasetError, InputError, SchemaVersionError, os_error_reason
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import Content, recover_folder, replace_folder
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.triangles import HEADER_SIZE
 
 DOCUMENT, README = "dataset.json", "README.txt"

@@ -28,7 +28,7 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Source
-from regolith_studio.io.json_text import parse_strict_json
+from regolith_studio.io.own_files import parse_strict_json
 from regolith_studio.io.triangles import stl_bytes
 
 

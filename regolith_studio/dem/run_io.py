@@ -25,9 +25,8 @@ from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.atomic import exchange, remove_quietly
 from regolith_studio.io.file_names import natural_key
-from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.output_lock import NEW, hidden_beside, output_lock
-from regolith_studio.io.own_files import read_arrays, read_json
+from regolith_studio.io.own_files import canonical_json, read_arrays, read_json
 from regolith_studio.messages import Message, from_json, to_json
 from regolith_studio.version import __version__
 

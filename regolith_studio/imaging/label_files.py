@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges
 from regolith_studio.io.atomic import staged_file, staged_folder
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 
 DATASETS = {"labels": "labels", "grey": "probability"}
 """The name of the volume in an HDF5 file, by its kind."""

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from regolith_studio.io.json_text import UNPRINTABLE
+from regolith_studio.io.own_files import UNPRINTABLE
 
 Cell = str | int | float | None
 """What a table may hold; ``None`` and NaN stand for a missing value."""

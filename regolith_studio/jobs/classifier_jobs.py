@@ -47,7 +47,7 @@ from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Volume, box_between
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.extraction_jobs import finished_slabs, unfinished_file, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput

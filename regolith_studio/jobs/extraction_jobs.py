@@ -35,7 +35,7 @@ from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.checkpoint import Checkpoint
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Progress, Started, Step, Steps

@@ -17,8 +17,8 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
-from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.output_lock import output_lock
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, result_of

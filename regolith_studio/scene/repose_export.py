@@ -32,7 +32,7 @@ from regolith_studio.geometry.convex_compound import union_of_meshes
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.atomic import exchange, hidden_folder, recover_folder, write_in_stage
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.triangles import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes, stl_bytes
 from regolith_studio.jobs.events import Progress, Started, Steps, result_of
 from regolith_studio.messages import N_

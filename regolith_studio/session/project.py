@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.file_names import unique_name
-from regolith_studio.io.json_text import parse_strict_json
+from regolith_studio.io.own_files import parse_strict_json
 from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE

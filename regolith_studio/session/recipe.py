@@ -13,7 +13,7 @@ from regolith_studio.dataset.settings import DatasetSettings, ExportSettings
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_TABLE_DEGREE
-from regolith_studio.io.json_text import parse_strict_json
+from regolith_studio.io.own_files import parse_strict_json
 from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.settings import ReadingSettings

@@ -20,7 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, InputError, format_validation_error, os_error_reason
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.messages import N_, Message, Number
 from regolith_studio.resources import resource
 from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from regolith_studio.io.json_text import JsonListWriter, canonical_json, json_bytes, parse_strict_json
+from regolith_studio.io.own_files import JsonListWriter, canonical_json, json_bytes, parse_strict_json
 
 ITEMS: list[Any] = [{"name": "a\nb", "µ": [1.5, {"deep": []}]}, 7, "x", {}]
 

@@ -6,7 +6,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import plotter_setup
 from regolith_studio.scene.cameras import apply_pose
-from regolith_studio.scene.gallery import gallery_pose, show_gallery
+from regolith_studio.scene.figure import gallery_pose, show_gallery
 
 
 def ball(radius: float) -> Mesh:

@@ -8,7 +8,7 @@ from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.messages import N_
 
 _NOTE = b"""meshes/*.obj are closed, outward, of volume 1, centroid at the origin, principal axes x, y, z.

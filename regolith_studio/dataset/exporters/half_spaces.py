@@ -5,7 +5,7 @@ from typing import Any
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
 

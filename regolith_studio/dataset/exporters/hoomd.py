@@ -2,7 +2,7 @@
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.messages import N_
 
 _NOTE = b"""type_shapes goes into the GSD chunk particles/type_shapes, types into particles/types:

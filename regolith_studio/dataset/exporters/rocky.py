@@ -14,7 +14,7 @@ from regolith_studio.dataset.export import (
 from regolith_studio.dataset.lifting_cylinder import MICROMETRE, box_mesh, particle_count, tube_mesh
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.messages import N_
 from regolith_studio.resources import resource

@@ -19,7 +19,7 @@ from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
 from regolith_studio.resources import resource

@@ -24,8 +24,7 @@ from regolith_studio.imaging.sample_volumes import SampleScan, SampleVolume, sam
 from regolith_studio.imaging.segmentation.classifier_document import training_document
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.file_names import path_inside
-from regolith_studio.io.json_text import json_bytes
-from regolith_studio.io.own_files import read_arrays, read_json
+from regolith_studio.io.own_files import json_bytes, read_arrays, read_json
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import extract_each, volume_sha256

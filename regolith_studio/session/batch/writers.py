@@ -23,7 +23,7 @@ from regolith_studio.harmonics.io import fits_from
 from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes, write_in_stage
 from regolith_studio.io.checkpoint import CheckpointRecord
 from regolith_studio.io.file_names import file_stem, unique_name
-from regolith_studio.io.json_text import JsonListWriter, json_bytes
+from regolith_studio.io.own_files import JsonListWriter, json_bytes
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.batch import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest

@@ -14,7 +14,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.atomic import write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.io.tables import Cell, Column, Table
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest

@@ -20,8 +20,7 @@ from regolith_studio.harmonics.roundness import wadell_roundness
 from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.io.atomic import staged_together, write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
-from regolith_studio.io.json_text import json_bytes
-from regolith_studio.io.own_files import arrays_document
+from regolith_studio.io.own_files import arrays_document, json_bytes
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.particle_jobs import MeasuredParticle

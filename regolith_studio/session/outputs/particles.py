@@ -17,7 +17,7 @@ from regolith_studio.imaging.grain_errors import stated_intervals
 from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.io.atomic import write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.events import Steps

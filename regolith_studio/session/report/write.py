@@ -15,7 +15,7 @@ from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import staged_folder, write_bytes
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.io.tables import Column, Table, rows_as_text
 from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.events import Partial, Started, Steps

@@ -11,8 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 from regolith_studio.errors import FileError, GeometryError, InputError
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.io.json_text import json_bytes
-from regolith_studio.io.own_files import arrays_document, arrays_from
+from regolith_studio.io.own_files import arrays_document, arrays_from, json_bytes
 from regolith_studio.registry import Registry
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import virtual_mesh

@@ -19,7 +19,7 @@ from regolith_studio.dem.evaluation.profile import project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.calibration import CONFIDENCE, density_of
 from regolith_studio.studies.figures import with_subscript, write_figure

@@ -28,7 +28,7 @@ from regolith_studio.jobs.model_jobs import GenerationRequest
 from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import framing_pose
-from regolith_studio.scene.gallery import gallery_pose, show_gallery
+from regolith_studio.scene.figure import gallery_pose, show_gallery
 from regolith_studio.shape_models.materials import LOG_FIELD
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.studies.population import KEYS

@@ -20,7 +20,7 @@ from regolith_studio.dem.run_io import read_final_state
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.io.atomic import staged_folder
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.messages import N_
 from regolith_studio.readers.position_formats import named_columns
 from regolith_studio.readers.positions import ParticlePositions, asks_for_columns, read_positions

@@ -18,7 +18,7 @@ from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import json_bytes
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extraction_jobs import extract_labels, write_labels
 from regolith_studio.jobs.extraction_settings import (
