@@ -45,6 +45,11 @@ def compile_first_for(*methods: str) -> Steps:
     yield from compile_first(*names[: last + 1])
 
 
+_announced: list[tuple[int, int]] = []
+"""Files before, and all that there will be, of what a thread of this process is compiling: one total for all
+that wait, which would else grow with each of them."""
+
+
 def compile_first(*tasks: str) -> Steps:
     """Wait until the kernels of these :data:`TASKS` are compiled; no step where they are already.
 
@@ -53,7 +58,8 @@ def compile_first(*tasks: str) -> Steps:
     missing = [task for task in tasks if not is_compiled(task)]
     if not missing:
         return
-    before, total = _count_files(), sum(TASKS[task] for task in missing)
+    ours = _count_files(), sum(TASKS[task] for task in missing)
+    before, total = next(iter(_announced), ours)
     rate = ProgressRate(total)
     yield Started(N_("Compiling, once after an installation"), total)
     process: subprocess.Popen[bytes] | None = None
@@ -62,7 +68,9 @@ def compile_first(*tasks: str) -> Steps:
         while not all(map(is_compiled, missing)):
             if process is None:
                 lock = _lock()
-                process = _compile_in_process(missing) if lock >= 0 else None
+                if lock >= 0:
+                    _announced.append(ours)
+                    process = _compile_in_process(missing)
             elif process.poll() is not None:
                 break
             rate.advance(min(_count_files() - before, total) - rate.done)
@@ -75,6 +83,7 @@ def compile_first(*tasks: str) -> Steps:
             process.kill()
             process.wait()
         if lock >= 0:
+            _announced.clear()
             os.close(lock)
 
 

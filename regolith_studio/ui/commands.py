@@ -459,7 +459,7 @@ class Commands(QObject):
                 N_("Reading particles"),
                 Job(measure_first, (paths, convention)),
                 dialog.set_first,
-                failed=lambda _: None,  # it is reported when the file is opened
+                failed=lambda _: dialog.set_first(None),  # it is reported when the file is opened
                 repeats=True,
             )
 

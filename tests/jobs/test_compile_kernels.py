@@ -73,6 +73,16 @@ def test_that_the_second_who_needs_kernels_waits_for_the_first(compiler: Compile
     assert len(compiler.processes) == 1
 
 
+def test_that_all_who_wait_announce_the_total_of_what_is_compiled(compiler: Compiler) -> None:
+    first = compile_first("read", "fit", "describe")
+    total = next(first).total
+    next(first)  # the process runs
+    assert next(compile_first("read")) == Started("Compiling, once after an installation", total)
+    list(first)
+    compiler.folder.joinpath("read").unlink()
+    assert next(compile_first("read")).total == TASKS["read"]
+
+
 def test_that_what_could_not_be_compiled_ahead_is_left_for_the_first_call(compiler: Compiler) -> None:
     compiler.script = "raise SystemExit(1)"
     list(compile_first("fit"))

@@ -138,9 +138,10 @@ class UnitDialog(QDialog):
         self.convention.activated.connect(
             lambda _: self.conventionChanged.emit(self.convention.currentData())
         )
-        buttons = self._buttons = QDialogButtonBox(
+        buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
+        self._open = buttons.button(QDialogButtonBox.StandardButton.Open)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)
@@ -153,9 +154,15 @@ class UnitDialog(QDialog):
         layout.addWidget(buttons)
         self.unit.currentIndexChanged.connect(self._show_voxel)
         self.unit.currentIndexChanged.connect(self._show_size)
-        self.unit.activated.connect(lambda _: setattr(self, "_touched", True))
+        self.unit.activated.connect(self._take_unit)
         self.voxel.valueChanged.connect(self._show_size)
         self.setValue(suggestion)
+        self.size_note.setText(tr("Reading particles"))
+        self._open.setEnabled(False)  # else a unit could be taken before the size is known that corrects it
+
+    def _take_unit(self) -> None:
+        self._touched = True
+        self._open.setEnabled(True)
 
     def value(self) -> str:
         """The unit."""
@@ -181,11 +188,12 @@ class UnitDialog(QDialog):
         ``first``: name of the first particle, and its longest side as the file gives it; or why there is
         none.
         """
-        self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(not isinstance(first, str))
+        self._open.setEnabled(not isinstance(first, str))
         if isinstance(first, str):
             self.size_note.setText(first)
             return
         self._first = first
+        self.size_note.clear()
         if first is not None and not self._touched and not _is_plausible(first[1], self.value()):
             plausible = [unit for unit in UNITS if unit != "voxel" and _is_plausible(first[1], unit)]
             if plausible:
