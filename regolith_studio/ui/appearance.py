@@ -8,7 +8,6 @@ from typing import Any, cast
 from PySide6.QtCore import QByteArray, QObject, QSignalBlocker, QSize, Signal
 from PySide6.QtWidgets import (
     QApplication,
-    QDialog,
     QDialogButtonBox,
     QFormLayout,
     QMainWindow,
@@ -22,7 +21,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.layout import STANDARD_SIZES
+from regolith_studio.ui.layout import STANDARD_SIZES, GrowingDialog
 from regolith_studio.ui.theme import (
     LARGEST,
     SMALLEST,
@@ -123,7 +122,7 @@ FONT_SIZE = "font_size"
 THEMES = {SYSTEM: N_("As the system"), "light": N_("Light"), "dark": N_("Dark")}
 
 
-class PreferencesDialog(QDialog):
+class PreferencesDialog(GrowingDialog):
     """Edits settings of the window; changes apply at once, the language at the next start."""
 
     valueChanged = Signal(dict)  # noqa: N815

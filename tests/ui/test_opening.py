@@ -39,6 +39,14 @@ def test_that_the_unit_that_makes_a_grain_is_suggested_with_its_size(shown, leng
     assert dialog.size_note.text().startswith(f"apollo_sample1 would be {size}")
 
 
+def test_that_a_dialog_grows_with_its_texts_instead_of_squeezing_its_fields(shown, wait):
+    dialog = shown(UnitDialog([Path("apollo_sample1.stl")], "um"))
+    high = dialog.unit.sizeHint().height()
+    dialog.set_first("The folder holds no mesh file that could be read. " * 8)
+    wait(lambda: dialog.size_note.height() >= dialog.size_note.heightForWidth(dialog.size_note.width()))
+    assert dialog.unit.height() >= high
+
+
 @pytest.mark.parametrize("kind", ["folder without meshes", "mesh cut short"])
 def test_that_the_unit_dialog_says_what_cannot_be_opened(opening, monkeypatch, tmp_path, kind):
     commands, *_ = opening

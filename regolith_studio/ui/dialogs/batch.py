@@ -11,7 +11,6 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QDialog,
     QDialogButtonBox,
     QFileDialog,
     QFormLayout,
@@ -35,6 +34,7 @@ from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.files import FolderDialog
+from regolith_studio.ui.layout import GrowingDialog
 from regolith_studio.ui.translation import Markup, tr, tr_count
 from regolith_studio.ui.widgets.labels import hint_label
 
@@ -203,7 +203,7 @@ class WorkersField(QWidget):
         self.changed.emit()
 
 
-class RunDialog(QDialog):
+class RunDialog(GrowingDialog):
     """Asks, then shows the progress; closing it stops nothing.
 
     Emits ``started`` with the request, and ``stopped``. A dialog calls :meth:`evaluate` where its value may

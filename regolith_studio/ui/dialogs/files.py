@@ -22,6 +22,7 @@ from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.particles import has_tables
 from regolith_studio.readers.settings import UNITS, unit_factor
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.layout import GrowingDialog
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label, short_number
@@ -85,7 +86,7 @@ CONVENTIONS = (
 """Conventions of tables of coefficients; the real ones have no Condon-Shortley phase."""
 
 
-class UnitDialog(QDialog):
+class UnitDialog(GrowingDialog):
     """Edits one unit, as the readers take it: ``mm``, or ``voxel:2.3`` with the voxel's edge in µm.
 
     For tables of coefficients it edits their convention too.

@@ -27,6 +27,7 @@ from regolith_studio.readers.positions import ParticlePositions, asks_for_column
 from regolith_studio.readers.settings import unit_factor
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
+from regolith_studio.ui.layout import GrowingDialog
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label, short_number
@@ -41,7 +42,7 @@ HEAP_WIDTHS = (5e-3, 2.0)
 """Plausible widths of a heap in metres."""
 
 
-class PositionsDialog(QDialog):
+class PositionsDialog(GrowingDialog):
     """Asks for what a file of positions does not state: columns, unit, diameter.
 
     ``read``: the particles with metres for the unit, or None where the columns must be named first.
