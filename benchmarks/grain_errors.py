@@ -165,7 +165,8 @@ def main(seed: int, repeats: int, result: str) -> None:
     for name, table in summary(rows).items():
         for row, numbers in table.items():
             print(name, row, numbers)
-        add_result(result, name, table, seed=seed, repeats=repeats)
+        shapes = len(SHAPES[name.partition(",")[0]])
+        add_result(result, name, table, seed=seed, repeats=repeats, shapes=shapes)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,18 @@
 """Intervals of what is measured of a digitised grain, from errors on grains of known shape.
 
-The table is ``grain_errors.json`` among the results of the benchmarks, by voxels across, noise and roundness.
+The table is ``grain_errors.json`` among the results of the benchmarks, by voxels across, noise and roundness:
+of each descriptor the mean error and both ends of its interval, in percent.
 """
 
 import json
 import re
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Literal, get_args
+from typing import Any
 
 import numpy as np
+from scipy.special import stdtrit
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle, ScanOfGrain
@@ -17,12 +20,12 @@ from regolith_studio.resources import results_folder
 
 KEYS = ("volume", "surface_area", "sphericity", "min_diameter", "max_diameter")
 """Descriptors that intervals are stated of; the first of the table's."""
+MEAN_KEYS = (*KEYS, "aspect_ratio")
+"""Descriptors that mean errors are stated of."""
 ROUND = 1.25
 """Aspect ratio up to which a grain is nearly round: its box has no direction, so extents err more."""
-Shape = Literal["round", "other"]
+SHAPES = ("round", "other")
 _CELL = re.compile(r"(\d+) voxels, noise (\d+) %")
-_NUMBERS = 3
-"""Of each descriptor in a row of the table: mean error and both ends of its interval, in percent."""
 
 
 def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tuple[float, float]]:
@@ -30,11 +33,39 @@ def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tup
 
     ``measured``: descriptors, those of :data:`KEYS` and the aspect ratio among them.
     """
-    shape: Shape = "round" if measured["aspect_ratio"] < ROUND else "other"
-    low, high = _errors(shape, scan.across, scan.noise, scan.follows_grey) / 100.0
+    name = _name(measured["aspect_ratio"], scan.follows_grey)
+    low, high = _errors(name, scan.across, scan.noise)[1:, : len(KEYS)]
     if not np.isfinite(low).all():
         return {}
     return {key: (measured[key] / (1 + high[k]), measured[key] / (1 + low[k])) for k, key in enumerate(KEYS)}
+
+
+def mean_errors(
+    aspect_ratios: Iterable[float], scans: Iterable[ScanOfGrain | None]
+) -> tuple[FloatArray, FloatArray]:
+    """Mean relative errors of grains like these, and how well the mean over all of them is known.
+
+    Errors have the shape (n, :data:`MEAN_KEYS`), NaN for grains without a scan or where too few were found.
+    The standard deviations, by key, are those of the means in the cells of the table, which are independent.
+    """
+    errors: list[FloatArray] = []
+    weights: defaultdict[tuple[str, int, int], float] = defaultdict(float)
+    for aspect_ratio, scan in zip(aspect_ratios, scans, strict=True):
+        errors.append(np.full(len(MEAN_KEYS), np.nan))
+        if scan is None:
+            continue
+        name = _name(aspect_ratio, scan.follows_grey)
+        errors[-1] = _errors(name, scan.across, scan.noise)[0]
+        if np.isfinite(errors[-1]).all():
+            for i, j, share in _corners(name, scan.across, scan.noise):
+                weights[name, i, j] += share
+    variance = np.zeros(len(MEAN_KEYS))
+    for (name, i, j), weight in weights.items():
+        _, low, high = _table(name)[2][i, j].T / 100.0
+        n = _n_grains(name)
+        deviation = 0.5 * (high - low) / (stdtrit(n - 1, 0.95) * np.sqrt(1 + 1 / n))
+        variance += (weight / sum(weights.values()) * deviation) ** 2 * (n - 1) / (n - 3) / n
+    return np.array(errors), np.sqrt(variance)
 
 
 def stated_intervals(
@@ -52,36 +83,54 @@ def follows_grey(across: float, noise: float) -> bool:
     """
     area = KEYS.index("surface_area")
     grey, mask = (
-        sum(np.abs(_errors(shape, across, noise, surface)[:, area]).max() for shape in get_args(Shape))
-        for surface in (True, False)
+        sum(np.abs(_errors(f"{shape}, {surface}", across, noise)[1:, area]).max() for shape in SHAPES)
+        for surface in ("grey", "mask")
     )
     return bool(not grey > mask)
 
 
-def _errors(shape: Shape, across: float, noise: float, grey: bool) -> FloatArray:
-    """Ends of the relative errors in percent, shape (2, keys), interpolated in the table."""
-    sizes, noises, table = _table(f"{shape}, {'grey' if grey else 'mask'}")
+def _name(aspect_ratio: float, grey: bool) -> str:
+    """Of the table of grains of this shape and surface."""
+    return f"{'round' if aspect_ratio < ROUND else 'other'}, {'grey' if grey else 'mask'}"
+
+
+def _errors(name: str, across: float, noise: float) -> FloatArray:
+    """Mean relative error and ends of its interval, shape (3, keys), interpolated in the table."""
+    table = _table(name)[2]
+    rows = [weight * table[i, j] for i, j, weight in _corners(name, across, noise)]
+    return np.asarray(np.sum(rows, axis=0).T / 100.0)
+
+
+def _corners(name: str, across: float, noise: float) -> list[tuple[int, int, float]]:
+    """Cells of the table around a grain, with the weights of the interpolation."""
+    sizes, noises, _ = _table(name)
     place = np.interp(np.log(max(across, 1.0)), np.log(sizes), np.arange(len(sizes)))
     level = np.interp(noise, noises, np.arange(len(noises)))
     i, j = (min(int(at), n - 2) for at, n in ((place, len(sizes)), (level, len(noises))))
-    u, v = place - i, level - j
-    corner = table[i : i + 2, j : j + 2]
-    rows = (1 - u) * corner[0] + u * corner[1]
-    return np.asarray(((1 - v) * rows[0] + v * rows[1]).T)
+    u, v = float(place - i), float(level - j)
+    return [(i + a, j + b, (u if a else 1 - u) * (v if b else 1 - v)) for a in (0, 1) for b in (0, 1)]
+
+
+@cache
+def _results() -> Any:
+    return json.loads((results_folder() / "grain_errors.json").read_text(encoding="utf-8"))
+
+
+def _n_grains(name: str) -> int:
+    """In each cell of a table."""
+    return int(_results()[name]["repeats"] * _results()[name]["shapes"])
 
 
 @cache
 def _table(name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Voxels across, noise as a share, and ends of the errors, shape (sizes, noises, keys, 2)."""
-    text = (results_folder() / "grain_errors.json").read_text(encoding="utf-8")
-    rows = json.loads(text)[name]["rows"]
+    """Voxels across, noise as a share, and mean and ends of the errors, shape (sizes, noises, keys, 3)."""
+    rows = _results()[name]["rows"]
     cells: dict[tuple[float, float], FloatArray] = {}
     for cell, numbers in rows.items():
         match = _CELL.fullmatch(cell)
         assert match is not None, cell
-        ends = np.reshape(numbers, (-1, _NUMBERS))[: len(KEYS), 1:]
-        cells[float(match[1]), int(match[2]) / 100] = ends
-    lost = np.full((len(KEYS), 2), np.nan)
+        cells[float(match[1]), int(match[2]) / 100] = np.reshape(numbers, (-1, 3))[: len(MEAN_KEYS)]
+    lost = np.full((len(MEAN_KEYS), 3), np.nan)
     sizes, noises = (sorted({cell[axis] for cell in cells}) for axis in (0, 1))
     table = np.array([[cells.get((size, noise), lost) for noise in noises] for size in sizes])
     return np.array(sizes), np.array(noises), table

@@ -13,7 +13,6 @@ from regolith_studio.dem.engines import ENGINES, engine_named, engine_notes
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import read_final_state
 from regolith_studio.errors import InputError, RegolithError
-from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
@@ -35,7 +34,7 @@ from regolith_studio.jobs.repose_study import (
 )
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, hash_of_particles, hash_of_rows
-from regolith_studio.jobs.uncertainty_chain import Chain, GrainSample, Levels, evaluate_rows
+from regolith_studio.jobs.uncertainty_chain import RESCANNED, Chain, GrainSample, Levels, evaluate_rows
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy
 from regolith_studio.studies.uncertainty import (
@@ -149,7 +148,7 @@ def _descriptors(
     design = saltelli_rows(steps, request.base, chain.seed)
     flat = design.reshape(-1, len(steps)).tolist()
     named = [{step.key: level for step, level in zip(steps, row, strict=True)} for row in flat]
-    tasks = _tasks(chain, named)
+    tasks = _tasks(named)
     yield Started(N_("Uncertainty of descriptors"), len(named) + 1)
     results = np.full((len(named), len(OUTPUTS)), np.nan)
     nominal, n_grains, done, problem = np.full(len(OUTPUTS), np.nan), 0, 0, ""
@@ -178,12 +177,11 @@ def _descriptors(
     return budget()
 
 
-def _tasks(chain: Chain, rows: Sequence[Levels]) -> list[list[tuple[int, Levels]]]:
+def _tasks(rows: Sequence[Levels]) -> list[list[tuple[int, Levels]]]:
     """The present settings as row -1, then all rows by the levels of the scan's steps."""
     groups: dict[tuple[int, ...], list[tuple[int, Levels]]] = {}
-    scanned = [key for key in ("voxel", "threshold", "splitting", "smoothing") if key in chain.choices]
     for number, levels in enumerate(rows):
-        groups.setdefault(tuple(levels[key] for key in scanned), []).append((number, levels))
+        groups.setdefault(tuple(levels.get(key, 0) for key in RESCANNED), []).append((number, levels))
     parts = [
         group[k : k + ROWS_A_TASK] for group in groups.values() for k in range(0, len(group), ROWS_A_TASK)
     ]
@@ -246,16 +244,16 @@ def _angles(
     rows = []
     for k in range(request.heaps):
         for each in plan:
-            key = f"{each.step.key}-{k}" if each.step.key == RESAMPLED else each.step.key
-            run = each.request
-            run = replace(run, case=replace(run.case, seed=run.case.seed + k))
-            rows.append(ReposeVariant(each.step.key, each.step.levels[-1], datasets[key], run))
+            dataset = datasets[f"{RESAMPLED}-{k}" if each.step.key == RESAMPLED else each.dataset]
+            run = replace(each.request, case=replace(each.request.case, seed=request.repose.case.seed + k))
+            rows.append(ReposeVariant(each.step.key, each.level, dataset, run))
     not_counted = (*budget.not_counted, *missing)
     notes = tuple(dict.fromkeys(note for each in plan for note in engine_notes(_engine_of(each))))
 
     def angle(study: ReposeStudy) -> UncertaintyBudget:
-        found = _angle_budget([each.step for each in plan], study, request, folder, notes)
-        return replace(budget, angle=found, not_counted=not_counted)
+        return replace(
+            budget, angle=_angle_budget(plan, study, request, folder, notes), not_counted=not_counted
+        )
 
     study = ReposeStudy(())
     steps = study_repose(rows, folder, 1, executor)
@@ -273,18 +271,24 @@ def _angles(
             yield Partial(current)
         else:
             yield step
-    found = angle(study)
+    final = angle(study)
     write_study(study, folder)
-    return found
+    return final
 
 
 @dataclass(frozen=True, eq=False)
 class _AngleStep:
-    """A step as it is changed for heaps: levels of the dataset, and how the heap is run."""
+    """A level of a step for heaps: levels of the dataset, and how the heap is run."""
 
     step: ChainStep
+    level: str
     levels: Levels
     request: ReposeRequest
+
+    @property
+    def dataset(self) -> str:
+        """Name of its folder."""
+        return "-".join([FILLING] if not self.levels else map(str, *self.levels.items()))
 
 
 def _engine_of(each: _AngleStep) -> Any:
@@ -292,15 +296,18 @@ def _engine_of(each: _AngleStep) -> Any:
 
 
 def _plan(chain: Chain, request: UncertaintyRequest) -> tuple[list[_AngleStep], list[ChainStep]]:
-    """The present settings first; then each step at its first other level; and what cannot be changed."""
+    """The present settings first; then each step at its other levels; and what cannot be changed."""
     how, missing = request.repose, []
-    plan = [_AngleStep(ChainStep(FILLING, N_("Filling"), ("as set",)), {}, how)]
-    for step in chain.steps:
+    plan = [_AngleStep(ChainStep(FILLING, N_("Filling"), ("as set",)), "as set", {}, how)]
+    for step in chain.steps_of_shapes:
         if step.key == RESAMPLED:
-            plan.append(_AngleStep(ChainStep(step.key, step.label, ("all grains", "resampled")), {}, how))
-        else:
-            changed = ChainStep(step.key, step.label, step.levels[:2])
-            plan.append(_AngleStep(changed, {step.key: 1}, how))
+            changed = replace(step, levels=("all grains", "resampled"))
+            plan.append(_AngleStep(changed, "resampled", {}, how))
+            continue
+        numbers = {name: k for k, name in reversed(list(enumerate(step.levels)))}  # the first of equal ones
+        names = tuple(dict.fromkeys(step.levels))
+        changed = replace(step, levels=names)
+        plan += [_AngleStep(changed, name, {step.key: numbers[name]}, how) for name in names[1:]]
     engine = engine_named(how.engine)
     others = [ENGINES[key] for key in OTHER_ENGINES if key in ENGINES and key != engine.key]
     other = next((each for each in others if not each.find().problem), None)
@@ -309,13 +316,14 @@ def _plan(chain: Chain, request: UncertaintyRequest) -> tuple[list[_AngleStep], 
     if other is None:
         missing.append(step)
     else:
-        plan.append(_AngleStep(step, {}, replace(how, engine=other.key, settings=None)))
+        plan.append(_AngleStep(step, other.key, {}, replace(how, engine=other.key, settings=None)))
     settings = engine.Settings() if how.settings is None else how.settings
     if (pace := getattr(settings, "time_step", None)) is None:
         missing.append(ChainStep("time_step", N_("Time step"), (), N_("the engine sets it itself")))
     else:
         step = ChainStep("time_step", N_("Time step"), (f"{pace:g}", f"{pace / 2:g}"))
-        plan.append(_AngleStep(step, {}, replace(how, settings=replace(settings, time_step=pace / 2))))
+        changed_settings = replace(settings, time_step=pace / 2)
+        plan.append(_AngleStep(step, step.levels[1], {}, replace(how, settings=changed_settings)))
     return plan, missing
 
 
@@ -333,14 +341,12 @@ def _datasets(
         if each.step.key == RESAMPLED:
             jobs += [(f"{RESAMPLED}-{k}", {RESAMPLED: k}) for k in range(request.heaps)]
         elif each.levels or each.step.key == FILLING:
-            jobs.append((each.step.key, each.levels))
-        else:
-            places[each.step.key] = place / FILLING
+            jobs.append((each.dataset, each.levels))
     yield Started(N_("Datasets of the steps"), len(jobs))
     nominal = chain.sample({})
     for number, (name, levels) in enumerate(jobs):
         places[name] = place / name
-        sample = nominal if not {"voxel", "threshold", "splitting", "smoothing"} & set(levels) else None
+        sample = nominal if not set(RESCANNED) & set(levels) else None
         for step in _dataset(sample or chain.sample(levels), levels, places[name], workers):
             if isinstance(step, Progress):
                 message = Message(N_("dataset of {value}: {step}"), value=name, step=step.message)
@@ -366,27 +372,27 @@ def _dataset(sample: GrainSample, levels: Levels, place: Path, workers: int | Ex
 
 
 def _angle_budget(
-    steps: Sequence[ChainStep],
+    plan: Sequence[_AngleStep],
     study: ReposeStudy,
     request: UncertaintyRequest,
     folder: Path,
     notes: tuple[str, ...],
 ) -> AngleBudget:
-    """The angles of the runs by step and seed, and those of the present settings evaluated otherwise."""
+    """The angles of the runs by level and seed, and those of the present settings evaluated otherwise."""
     first = request.repose.case.seed
-    angles = {step.key: np.full(request.heaps, np.nan) for step in steps}
+    angles = {(each.step.key, each.level): np.full(request.heaps, np.nan) for each in plan}
     evaluated = np.full(request.heaps, np.nan)
     settings = request.repose.evaluation
     other = replace(settings, toe=TOE_FACTOR * settings.toe)
     for run in study.runs:
-        angles[run.varied][run.seed - first] = np.nan if run.angle is None else run.angle
+        angles[run.varied, str(run.value)][run.seed - first] = np.nan if run.angle is None else run.angle
         if run.varied == FILLING and run.angle is not None:
             evaluated[run.seed - first] = _angle_of(study_place(folder, run.folder), other)
     toes = tuple(f"lower cut at {each.toe:g} d or more" for each in (settings, other))
     step = ChainStep("evaluation", N_("Evaluation"), toes)
-    changed: dict[str, FloatArray] = {**angles, "evaluation": evaluated}
-    nominal = changed.pop(FILLING)
-    return AngleBudget((*steps[1:], step), nominal, changed, notes)
+    nominal = angles.pop((FILLING, plan[0].level))
+    steps = dict.fromkeys(each.step for each in plan[1:])
+    return AngleBudget((*steps, step), nominal, {**angles, (step.key, toes[1]): evaluated}, notes)
 
 
 def _angle_of(place: Path, evaluation: Any) -> float:

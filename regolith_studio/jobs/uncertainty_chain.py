@@ -17,6 +17,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.imaging.extraction import extract_particles
+from regolith_studio.imaging.grain_errors import MEAN_KEYS, mean_errors
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.settings import DenoiseMethod
 from regolith_studio.imaging.volume import Volume
@@ -35,6 +36,7 @@ from regolith_studio.studies.uncertainty import KEYS, RESAMPLED, RESAMPLES, Chai
 LABELS = {
     "threshold": N_("Threshold and denoising"),
     "splitting": N_("Separation of touching grains"),
+    "digitisation": N_("Errors of digitised grains"),
     "voxel": N_("Size of voxels"),
     "smoothing": N_("Smoothing of surfaces"),
     RESAMPLED: N_("Grains and representatives"),
@@ -44,7 +46,11 @@ LABELS = {
     "method": N_("Method of coarsening"),
     "kept": N_("Descriptors that are kept"),
 }
-SCAN_STEPS = ("threshold", "splitting", "voxel", "smoothing")
+RESCANNED = ("threshold", "splitting", "voxel", "smoothing")
+"""Steps that need the grains to be taken from the scan again."""
+SCAN_STEPS = ("digitisation", *RESCANNED)
+DEVIATIONS = (0.0, 1.5**0.5, -(1.5**0.5))
+"""Of the mean error of digitised grains, in its standard deviation: levels of variance 1."""
 RESIDUAL_NOISE = {"none": 1.0, "gaussian": 0.21, "median": 0.24, "non-local-means": 0.24}
 """Standard deviation of denoised grey values over that of the values, for white noise."""
 PROBABILITY_SHIFT = 0.1
@@ -109,6 +115,9 @@ class Chain:
         extraction, how = self.grains.extraction, self.grains.segmentation
         if self.kind == "grey":
             found["threshold"] = self._thresholds()
+            found["digitisation"] = tuple(
+                ("mean error" + f" {z:+.2f} s.d." * (z != 0.0), z) for z in DEVIATIONS
+            )
             if how.splitting.enabled:
                 h = how.splitting.h_maxima
                 found["splitting"] = tuple(
@@ -163,9 +172,19 @@ class Chain:
 
     @property
     def steps(self) -> tuple[ChainStep, ...]:
-        """The steps that vary."""
+        """The steps of the design: grains with stated errors need no larger voxels."""
+        unused = "voxel" if "digitisation" in self.choices else ""
+        return tuple(step for step in self._all_steps if step.key != unused)
+
+    @property
+    def steps_of_shapes(self) -> tuple[ChainStep, ...]:
+        """The steps that change simulated shapes; stated errors are of descriptors only."""
+        return tuple(step for step in self._all_steps if step.key != "digitisation")
+
+    @property
+    def _all_steps(self) -> list[ChainStep]:
         named = {key: tuple(name for name, _ in levels) for key, levels in self.choices.items()}
-        return tuple(ChainStep(key, LABELS[key], named[key]) for key in LABELS if key in named)
+        return [ChainStep(key, LABELS[key], named[key]) for key in LABELS if key in named]
 
     @property
     def not_counted(self) -> tuple[ChainStep, ...]:
@@ -258,11 +277,42 @@ class GrainSample:
         key = self.chain.value(RESAMPLED, levels)
         return np.random.default_rng((self.chain.seed, key)).integers(0, n, n)
 
+    def means(self, levels: Levels) -> FloatArray:
+        """Of grains and of polyhedra, the errors of digitised grains taken from both."""
+        grains = self.grain_means(levels)
+        polyhedra = self.polyhedra_means(levels) * grains / self._mean(self._table, levels)
+        return np.concatenate([grains, polyhedra])
+
     def grain_means(self, levels: Levels) -> FloatArray:
-        """Weighted means of :data:`KEYS` over the grains."""
+        """Weighted means of :data:`KEYS` over the grains, without the errors of the level."""
+        table = self._table
+        if "digitisation" in levels:
+            mean, deviation = self._mean_errors
+            table = table / (1 + mean + self.chain.value("digitisation", levels) * deviation)
+        return self._mean(table, levels)
+
+    def _mean(self, table: FloatArray, levels: Levels) -> FloatArray:
         picks = self.picks(levels)
-        table = np.array([[each[key] for key in KEYS] for each in self.descriptors])
         return np.asarray(np.average(table[picks], axis=0, weights=self.weights[picks]))
+
+    @cached_property
+    def _table(self) -> FloatArray:
+        return np.array([[each[key] for key in KEYS] for each in self.descriptors])
+
+    @cached_property
+    def _mean_errors(self) -> tuple[FloatArray, FloatArray]:
+        """Of each grain and key, 0 where none is stated, and their standard deviation by key."""
+        places = [MEAN_KEYS.index(key) for key in KEYS]
+        scans = [particle.scan for particle in self.particles]
+        errors, deviation = mean_errors([each["aspect_ratio"] for each in self.descriptors], scans)
+        return np.nan_to_num(errors[:, places]), deviation[places]
+
+    @property
+    def without_errors(self) -> int:
+        """Number of grains of a grey scan that have no stated errors."""
+        if "digitisation" not in self.chain.choices:
+            return 0
+        return int((self._mean_errors[0] == 0.0).all(axis=1).sum())
 
     def polyhedra_means(self, levels: Levels) -> FloatArray:
         """Means of :data:`KEYS` over the simulated particles, with the sizes of their classes."""
@@ -335,10 +385,11 @@ def evaluate_rows(chain: Chain, rows: Sequence[tuple[int, Levels]]) -> dict[str,
     except RegolithError as error:
         return found | {"problem": str(error)}
     found["n_grains"] = len(sample.particles)
+    if unknown := sample.without_errors:
+        found["problem"] = f"{unknown} grains are clipped, or too small for the noise, and count as measured."
     for number, levels in rows:
         try:
-            means = np.concatenate([sample.grain_means(levels), sample.polyhedra_means(levels)])
-            found["rows"][str(number)] = means.tolist()
+            found["rows"][str(number)] = sample.means(levels).tolist()
         except RegolithError as error:
             found["problem"] = str(error)
     return found

@@ -114,17 +114,28 @@ class DescriptorBudget:
     @property
     def relative_deviation(self) -> FloatArray:
         """Standard deviation of the logarithms over both samples; NaN where fewer than two rows are known."""
-        rows = np.log(self.results[:2].reshape(-1, len(OUTPUTS)))
-        rows = rows[np.isfinite(rows).all(axis=1)]
+        rows = self._logarithms
         return rows.std(axis=0, ddof=1) if len(rows) > 1 else np.full(len(OUTPUTS), np.nan)
 
     @property
+    def _logarithms(self) -> FloatArray:
+        """Of the known rows of both samples."""
+        rows: FloatArray = np.log(self.results[:2].reshape(-1, len(OUTPUTS)))
+        return rows[np.isfinite(rows).all(axis=1)]
+
+    @property
     def intervals(self) -> FloatArray:
-        """Ends for each output, shape (outputs, 2)."""
-        rows = int(np.isfinite(self.results[:2]).all(axis=2).sum())
-        freedom = max(min(self.n_grains, rows) - 1, 1)
-        half = student_t.ppf((1 + CONFIDENCE) / 2, freedom) * self.relative_deviation
-        return self.nominal[:, None] * np.exp(np.column_stack([-half, half]))
+        """Ends for each output, shape (outputs, 2), about the mean of the logarithms of all rows.
+
+        The present settings need not be in the middle: levels are on one side of them, and the errors of
+        digitised grains have a mean.
+        """
+        logs = self._logarithms
+        freedom = max(min(self.n_grains, len(logs)) - 1, 1)
+        factor = student_t.ppf((1 + CONFIDENCE) / 2, freedom) * np.sqrt(1 + 1 / max(len(logs), 1))
+        half = factor * self.relative_deviation
+        centre = logs.mean(axis=0) if len(logs) else np.full(len(OUTPUTS), np.nan)
+        return np.asarray(np.exp(np.column_stack([centre - half, centre + half])))
 
     @cached_property
     def shares(self) -> tuple[FloatArray, FloatArray] | None:
@@ -148,7 +159,7 @@ class DescriptorBudget:
 
 @dataclass(frozen=True)
 class AngleEffect:
-    """What a step does to the angle, in degrees.
+    """What a level of a step does to the angle, in degrees.
 
     - ``change``, ``low``, ``high``: mean difference of heaps of the same seeds, and its interval; of the
       bootstrap the standard deviation that it adds.
@@ -158,6 +169,7 @@ class AngleEffect:
     """
 
     step: ChainStep
+    level: str
     change: float
     low: float
     high: float
@@ -166,11 +178,9 @@ class AngleEffect:
     heaps_needed: int | None
 
     @property
-    def variance(self) -> float:
-        """Of two equally probable levels, or of the bootstrap; 0 where it is not decided."""
-        if not self.decided:
-            return 0.0
-        return self.change**2 if self.step.key == RESAMPLED else self.change**2 / 4
+    def far_end(self) -> float:
+        """The end of the interval that is farther from 0."""
+        return max(self.low, self.high, key=abs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,13 +189,13 @@ class AngleBudget:
 
     - ``steps``: those that were changed, one at a time.
     - ``nominal``: of the present settings, by seed.
-    - ``changed``: of each step, by seed, by its key.
+    - ``changed``: of each level, by seed, by the key of its step and its name.
     - ``notes``: on the engines.
     """
 
     steps: tuple[ChainStep, ...]
     nominal: FloatArray
-    changed: Mapping[str, FloatArray]
+    changed: Mapping[tuple[str, str], FloatArray]
     notes: tuple[str, ...] = ()
 
     @property
@@ -202,41 +212,49 @@ class AngleBudget:
 
     @property
     def effects(self) -> tuple[AngleEffect, ...]:
-        """Of the steps with two pairs of heaps or more."""
-        found = []
+        """Of the levels with two pairs of heaps or more."""
+        effects = []
         for step in self.steps:
-            pairs = np.column_stack([self.nominal, self.changed[step.key]])
-            pairs = pairs[np.isfinite(pairs).all(axis=1)]
-            if len(pairs) > 1:
-                found.append(
-                    _added_spread(step, pairs) if step.key == RESAMPLED else _difference(step, pairs)
-                )
-        return tuple(found)
+            for level in step.levels[1:]:
+                pairs = np.column_stack([self.nominal, self.changed[step.key, level]])
+                pairs = pairs[np.isfinite(pairs).all(axis=1)]
+                if len(pairs) > 1:
+                    effect = _added_spread if step.key == RESAMPLED else _difference
+                    effects.append(effect(step, level, pairs))
+        return tuple(effects)
+
+    def step_variances(self, with_undecided: bool = False) -> dict[str, float]:
+        """By key: of equally probable levels, or of the bootstrap; undecided changes are 0, or far ends."""
+        changes: dict[str, list[float]] = {}
+        for effect in self.effects:
+            undecided = effect.far_end if with_undecided else 0.0
+            changes.setdefault(effect.step.key, []).append(effect.change if effect.decided else undecided)
+        return {
+            key: values[0] ** 2 if key == RESAMPLED else float(np.var([0.0, *values]))
+            for key, values in changes.items()
+        }
 
     @property
     def variance(self) -> float:
-        """Of the value: that of the filling and of the steps that are decided."""
-        return self.filling_variance + sum(effect.variance for effect in self.effects)
+        """Of the value: that of the filling and of the levels that are decided."""
+        return self.filling_variance + sum(self.step_variances().values())
 
     @property
     def half_width(self) -> float:
-        """Of the interval of the value, which holds the steps that are decided."""
+        """Of the interval of the value, which holds the levels that are decided."""
         return self._half_width(self.variance)
 
     @property
     def half_width_with_undecided(self) -> float:
-        """The same if each undecided step were as large as the far end of its interval."""
-        open_ = [each for each in self.effects if not each.decided]
-        ends = [max(abs(each.low), abs(each.high)) for each in open_]
-        parts = [end**2 / (1 if e.step.key == RESAMPLED else 4) for e, end in zip(open_, ends, strict=True)]
-        return self._half_width(self.variance + sum(parts))
+        """The same if each undecided level changed the angle by the far end of its interval."""
+        return self._half_width(self.filling_variance + sum(self.step_variances(True).values()))
 
     def _half_width(self, variance: float) -> float:
         n = int(np.isfinite(self.nominal).sum())
         return float(student_t.ppf((1 + CONFIDENCE) / 2, n - 1) * variance**0.5) if n > 1 else np.nan
 
 
-def _difference(step: ChainStep, pairs: FloatArray) -> AngleEffect:
+def _difference(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect:
     change = pairs[:, 1] - pairs[:, 0]
     n, mean, spread = len(change), float(change.mean()), float(change.std(ddof=1))
 
@@ -245,10 +263,10 @@ def _difference(step: ChainStep, pairs: FloatArray) -> AngleEffect:
 
     decided = abs(mean) > half(n)
     needed = None if decided else _first(lambda count: half(count) < abs(mean), n)
-    return AngleEffect(step, mean, mean - half(n), mean + half(n), n, decided, needed)
+    return AngleEffect(step, level, mean, mean - half(n), mean + half(n), n, decided, needed)
 
 
-def _added_spread(step: ChainStep, pairs: FloatArray) -> AngleEffect:
+def _added_spread(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect:
     """Standard deviation that another sample of grains in each heap adds, by the ratio of variances."""
     n, (same, other) = len(pairs), pairs.var(axis=0, ddof=1).tolist()
     ends = (1 + CONFIDENCE) / 2, (1 - CONFIDENCE) / 2
@@ -262,7 +280,7 @@ def _added_spread(step: ChainStep, pairs: FloatArray) -> AngleEffect:
     needed = None
     if not decided:
         needed = _first(lambda count: ratio > f_distribution.ppf(ends[0], count - 1, count - 1), n)
-    return AngleEffect(step, float(np.sqrt(max(other - same, 0.0))), low, high, n, decided, needed)
+    return AngleEffect(step, level, float(np.sqrt(max(other - same, 0.0))), low, high, n, decided, needed)
 
 
 def _first(enough: Any, n: int) -> int:
@@ -324,11 +342,13 @@ def _angle_rows(angle: AngleBudget) -> list[tuple[Any, ...]]:
     seeds = len(angle.nominal)
     share = _number(angle.filling_variance / whole if whole > 0.0 else np.nan)
     rows.append(("angle_of_repose", FILLING, f"{seeds} seeds", *(None,) * 9, share, seeds, None))
+    variances = angle.step_variances()
     for each in angle.effects:
         numbers = map(_number, (each.change, each.low, each.high))
-        share = _number(each.variance / whole) if each.decided else None
+        variance = variances.pop(each.step.key, None) if each.decided else None  # of the step, once
+        share = None if variance is None else _number(variance / whole)
         cells = (*(None,) * 6, *numbers, share, each.n, each.heaps_needed)
-        rows.append(("angle_of_repose", each.step.key, _levels(each.step), *cells))
+        rows.append(("angle_of_repose", each.step.key, f"{each.step.levels[0]} | {each.level}", *cells))
     return rows
 
 

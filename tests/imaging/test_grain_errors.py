@@ -67,9 +67,9 @@ def test_that_the_intervals_of_a_ball_hold_its_volume_and_area() -> None:
         "grey",
         "ball",
     )
-    [found] = extract_particles(segment(grey).labels, grey=grey).found
+    [found] = extract_particles(segment(grey).labels, grey=grey).particles
     assert found.scan is not None
     assert found.scan.noise == pytest.approx(0.05, rel=0.2)
-    stated = intervals(describe(found.particle.mesh, (*KEYS, "aspect_ratio")), found.scan)
+    stated = intervals(describe(found.mesh, (*KEYS, "aspect_ratio")), found.scan)
     for key, true in (("volume", 4 / 3 * np.pi * radius**3), ("surface_area", 4 * np.pi * radius**2)):
         assert stated[key][0] <= true <= stated[key][1]

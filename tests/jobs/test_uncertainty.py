@@ -70,7 +70,7 @@ def test_that_the_budget_of_a_sample_is_resumed_to_the_same_bytes(
     budget = result_of(uncertainty_steps(chain, SMALL, tmp_path / "once"))
     found = budget.descriptors
     assert [step.key for step in budget.not_counted] == [
-        *("threshold", "splitting", "voxel", "smoothing", "l_max", "model")
+        *("threshold", "splitting", "digitisation", "voxel", "smoothing", "l_max", "model")
     ]
     known = [np.mean([each.mesh.volume for each in ellipsoids(24)]), 1.0]
     assert found.nominal[0] == pytest.approx(known[0], rel=1e-6)
@@ -114,16 +114,18 @@ def test_that_only_the_step_that_moves_the_angle_has_a_share_of_it(
     budget = measure_uncertainty(ellipsoids(24), tmp_path, request, **SETTINGS)
     angle = budget.angle
     assert angle is not None
-    effects = {effect.step.key: effect for effect in angle.effects}
-    assert list(effects) == [
-        *("representatives", "facets", "method", "kept", "engine", "time_step", "evaluation")
+    assert [effect.step.key for effect in angle.effects] == [
+        *("representatives", "facets", "facets", "method", "kept", "kept"),
+        *("engine", "time_step", "evaluation"),
     ]
+    effects = {effect.step.key: effect for effect in angle.effects}
     known = true_angle(0.8)
     higher = np.degrees(np.arctan(1.1 * np.tan(np.radians(known)))) - known
     assert effects["engine"].change == pytest.approx(higher, abs=0.6)
-    assert [key for key, effect in effects.items() if effect.decided and effect.variance > 0.01] == ["engine"]
+    variances = angle.step_variances()
+    assert [key for key, variance in variances.items() if variance > 0.01] == ["engine"]
     assert effects["time_step"].change == 0.0  # the same heaps
-    assert angle.variance == pytest.approx(angle.filling_variance + effects["engine"].variance, rel=0.01)
+    assert angle.variance == pytest.approx(angle.filling_variance + variances["engine"], rel=0.01)
     assert any("rapier" in note.lower() for note in angle.notes)
     document = json.loads((tmp_path / "uncertainty.json").read_text())
     shares = {row["step"]: row["share"] for row in document["steps"] if row["quantity"] == "angle_of_repose"}
@@ -133,14 +135,17 @@ def test_that_only_the_step_that_moves_the_angle_has_a_share_of_it(
 
 
 @pytest.mark.slow
-def test_that_intervals_of_digitised_grains_hold_the_true_volume_as_often_as_they_say(
+def test_that_intervals_of_digitised_grains_hold_the_truth_as_often_as_they_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A small version of the benchmark: 27 grains in one scan, 100 trials, voxels and grains as steps."""
-    monkeypatch.setattr(uncertainty_coverage, "VARIED", ("voxel", "representatives"))
-    ends, truth, n_grains = uncertainty_coverage.intervals_of_trials(1, 100, seed=3)
-    assert n_grains > 22
-    counts = uncertainty_coverage.covered(ends, truth)
-    for key in ("volume", "surface_area"):
-        assert binomtest(counts[KEYS.index(key)], 100, CONFIDENCE).pvalue > 0.025, (key, counts)
-    assert counts[KEYS.index("sphericity")] >= 90  # wider than it needs to be
+    """A small version of the benchmark: 27 grains in one scan, 100 trials, stated errors and grains.
+
+    Errors of AR scatter by 7 % a grain, so that the mean over 27 of them is not that of all.
+    """
+    monkeypatch.setattr(uncertainty_coverage, "VARIED", ("digitisation", "representatives"))
+    scans = uncertainty_coverage.digitised_scans(1, 3)
+    assert scans.n_grains > 22
+    ends = uncertainty_coverage.intervals_of_trials(scans, 100, 3)
+    counts = uncertainty_coverage.covered(ends, scans.truth)
+    for key, count in zip(KEYS[:3], counts, strict=False):
+        assert binomtest(count, 100, CONFIDENCE).pvalue > 0.025, (key, counts)

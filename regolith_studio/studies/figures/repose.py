@@ -378,7 +378,8 @@ def _draw_angle(axis: Axes, angle: AngleBudget) -> None:
     for place, effect in enumerate(angle.effects, 1):
         axis.barh(place, effect.change, color=DECIDED if effect.decided else OPEN)
         axis.plot([effect.low, effect.high], [place, place], color="0.2", linewidth=0.8)
-        names.append(effect.step.label)
+        several = len(effect.step.levels) > 2
+        names.append(f"{effect.step.label}: {effect.level}" if several else effect.step.label)
     axis.set_yticks(range(len(names)), names, fontsize=8)
     axis.yaxis.tick_right()
     axis.invert_yaxis()
