@@ -38,8 +38,7 @@ def match(
     seed: Seed = 0,
 ) -> None:
     """Say how near simulants are to a soil, and which mixture of them is nearest, in grams."""
-    from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.io.tables import write_table
+    from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.matching_jobs import MatchRequest, match_materials
     from regolith_studio.readers.settings import unit_factor
 
@@ -48,16 +47,11 @@ def match(
         if weighting not in ("number", "volume"):
             raise typer.BadParameter(f"Particles count by number or by volume, not by {weighting!r}.")
     request = MatchRequest(unit, most, weighting, seed)
-    found, problems = run_with_progress(match_materials(target, candidates, request, jobs))
-    table = found.table(mass)
+    found = run_with_progress(match_materials(target, candidates, request, jobs))
+    table = found.match.table(mass)
     if output is not None:
-        from regolith_studio.studies.figures import write_figure
-        from regolith_studio.studies.figures.population import matching_figure
-
-        with staged_folder(output, "match") as stage:
-            write_table(table, stage, "match")
-            write_figure(matching_figure(found), stage, "match")
-    print_errors(problem.with_path for problem in problems)
+        result_of(found.written(output, mass))
+    print_errors(problem.with_path for problem in found.problems)
     if json:
         names = [column.name for column in table.columns]
         print_json(
@@ -65,5 +59,5 @@ def match(
         )
     else:
         print_table(table)
-        typer.echo(f"Nearest by itself: {found.nearest.name}. {table.notes[0]}")
-    raise typer.Exit(1 if problems else 0)
+        typer.echo(f"Nearest by itself: {found.match.nearest.name}. {table.notes[0]}")
+    raise typer.Exit(1 if found.problems else 0)

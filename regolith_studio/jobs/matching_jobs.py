@@ -1,23 +1,27 @@
 """Jobs that measure the materials that are compared with a soil, and compare them."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import contextlib
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from regolith_studio.descriptors.catalogue import DEFAULT_KEYS
 from regolith_studio.descriptors.describe import Descriptors, describe
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError, GeometryError, InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.atomic import staged_folder
+from regolith_studio.io.tables import write_table
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Failed, Job, Started, Steps
+from regolith_studio.jobs.events import Failed, Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, MeshFile, find_files, read_file
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.shape_tables import SUFFIXES, read_shape_table
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.studies.matching import SHAPES, SIZES, ComparedMaterial, match
+from regolith_studio.studies.matching import SHAPES, SIZES, ComparedMaterial, Match, match
 from regolith_studio.studies.population import descriptors_of
 
 N_DRAWN = 1000
@@ -39,19 +43,52 @@ class MatchRequest:
     seed: int = 0
 
 
+@dataclass(frozen=True, eq=False)
+class DrawnMatch:
+    """A comparison, what could not be read, and its picture as PNG."""
+
+    match: Match
+    problems: tuple[FileProblem, ...]
+    picture: bytes = b""
+
+    def written(self, folder: Path, mass: float = 100.0) -> Steps:
+        """Write table and picture in one step; returns the folder."""
+        from regolith_studio.studies.figures import write_figure
+        from regolith_studio.studies.figures.population import matching_figure  # matplotlib
+
+        yield Started(N_("Saving"))
+        with staged_folder(folder, "match") as stage:
+            write_table(self.match.table(mass), stage, "match")
+            write_figure(matching_figure(self.match), stage, "match")
+        return folder
+
+
+def draw_match(
+    target: str | tuple[Particle, ...], candidates: Sequence[str], request: MatchRequest = MatchRequest()
+) -> Steps:
+    """:func:`match_materials` with a picture; returns :class:`DrawnMatch`."""
+    found = yield from match_materials(target, candidates, request)
+    from regolith_studio.studies.figures import png_of
+    from regolith_studio.studies.figures.population import matching_figure  # matplotlib
+
+    return replace(found, picture=png_of(matching_figure(found.match)))
+
+
 def match_materials(
-    target: str,
+    target: str | tuple[Particle, ...],
     candidates: Sequence[str],
     request: MatchRequest = MatchRequest(),
     workers: int | Executor = 1,
 ) -> Steps:
-    """Compare a target with candidates; returns a ``Match`` and a tuple of ``FileProblem``.
+    """Compare a target with candidates; returns :class:`DrawnMatch` without the picture.
 
-    Each is a folder or archive of meshes, whose groups are fractions (those of the target count together), a
-    table of descriptors or of length, width and thickness, or the name of a shipped card.
+    A target may be open particles. Else each is a folder or archive of meshes, whose groups are fractions
+    (those of the target count together), a table of descriptors or of length, width and thickness, or the
+    name of a shipped card.
     """
     yield from compile_first("describe")
-    chords = any(Path(name).suffix.lower() in SUFFIXES for name in (target, *candidates))
+    names = [name for name in (target, *candidates) if isinstance(name, str)]
+    chords = any(Path(name).suffix.lower() in SUFFIXES for name in names)
     keys = (
         "volume",
         *(key for key in (*SIZES, *SHAPES) if key in DEFAULT_KEYS),
@@ -59,8 +96,11 @@ def match_materials(
     )
     problems: list[FileProblem] = []
     with open_executor(workers) as executor:
-        groups = yield from _measured(target, keys, request, executor, problems)
-        soil = ComparedMaterial(Path(target).name, _joined(list(groups.values())))
+        if isinstance(target, str):
+            groups = yield from _measured(target, keys, request, executor, problems)
+            soil = ComparedMaterial(Path(target).name, _joined(list(groups.values())))
+        else:
+            soil = ComparedMaterial("sample", (yield from _measured_particles(target, keys, request)))
         parts: list[ComparedMaterial] = []
         for name in candidates:
             measured = yield from _measured(name, keys, request, executor, problems)
@@ -69,7 +109,7 @@ def match_materials(
                 inner = group if group not in ("", title) else ""
                 parts.append(ComparedMaterial("/".join(filter(None, (title, inner))), columns))
     yield Started(N_("Comparing"))
-    return match(soil, parts, request.weighting, request.seed), tuple(problems)
+    return DrawnMatch(match(soil, parts, request.weighting, request.seed), tuple(problems))
 
 
 _Columns = Mapping[str, np.ndarray]
@@ -103,6 +143,21 @@ def _measured(
     if not rows:
         raise FileError(found[0].sentence)
     return {group: _columns(np.array(table), keys) for group, table in rows.items()}
+
+
+def _measured_particles(
+    particles: Sequence[Particle], keys: tuple[str, ...], request: MatchRequest
+) -> Generator[Step, None, _Columns]:
+    """Columns of particles that are open; those without descriptors are left out."""
+    chosen = np.random.default_rng(request.seed).permutation(len(particles))[: request.most]
+    yield Started(N_("Measuring"), len(chosen))
+    rows = []
+    for done, index in enumerate(sorted(chosen.tolist()), 1):
+        with contextlib.suppress(GeometryError):
+            measured = describe(particles[index], keys)
+            rows.append([measured[key] for key in keys])
+        yield Progress(done, len(chosen), particles[index].name)
+    return _columns(np.array(rows).reshape(-1, len(keys)), keys)
 
 
 def _chosen(files: Sequence[MeshFile], request: MatchRequest) -> list[MeshFile]:

@@ -516,6 +516,26 @@
         <translation>Hinzufügen</translation>
     </message>
     <message>
+        <source>Add a card</source>
+        <translation>Karte hinzufügen</translation>
+    </message>
+    <message>
+        <source>Add a material card</source>
+        <translation>Materialkarte hinzufügen</translation>
+    </message>
+    <message>
+        <source>Add files …</source>
+        <translation>Dateien hinzufügen …</translation>
+    </message>
+    <message>
+        <source>Add folder …</source>
+        <translation>Ordner hinzufügen …</translation>
+    </message>
+    <message>
+        <source>Add the materials to compare with first.</source>
+        <translation>Fügen Sie zuerst die Materialien zum Vergleich hinzu.</translation>
+    </message>
+    <message>
         <source>Add the new ones to them, or replace them? Undo restores replaced ones.</source>
         <translation>Die neuen hinzufügen oder die offenen ersetzen? Rückgängig stellt ersetzte wieder her.</translation>
     </message>
@@ -1120,6 +1140,10 @@
         <translation>Kugelhaufen und gerundete Formen</translation>
     </message>
     <message>
+        <source>Co&amp;mpare with materials …</source>
+        <translation>&amp;Mit Materialien vergleichen …</translation>
+    </message>
+    <message>
         <source>Coarse graining</source>
         <translation>Coarse-Graining</translation>
     </message>
@@ -1218,6 +1242,10 @@
     <message>
         <source>Compare the polyhedron with</source>
         <translation>Das Polyeder vergleichen mit</translation>
+    </message>
+    <message>
+        <source>Compare the sample with other materials first.</source>
+        <translation>Vergleichen Sie die Probe zuerst mit anderen Materialien.</translation>
     </message>
     <message>
         <source>Comparing</source>
@@ -1604,12 +1632,24 @@
         <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
     </message>
     <message>
+        <source>Distance in floors</source>
+        <translation>Abstand in Rauschgrenzen</translation>
+    </message>
+    <message>
         <source>Distances</source>
         <translation>Abstände</translation>
     </message>
     <message>
+        <source>Distances and masses</source>
+        <translation>Abstände und Massen</translation>
+    </message>
+    <message>
         <source>Distances of the draws</source>
         <translation>Abstände der Ziehungen</translation>
+    </message>
+    <message>
+        <source>Distances, masses of the mixture, and sizes</source>
+        <translation>Abstände, Massen der Mischung und Größen</translation>
     </message>
     <message>
         <source>Distribution</source>
@@ -1820,6 +1860,10 @@
         <translation>Energiedistanz</translation>
     </message>
     <message>
+        <source>Energy distance in floors; 1 is that of samples of the target itself.</source>
+        <translation>Energieabstand in Rauschgrenzen; 1 ist der von Stichproben des Ziels selbst.</translation>
+    </message>
+    <message>
         <source>Engine</source>
         <translation>Rechenkern</translation>
     </message>
@@ -1870,6 +1914,10 @@
     <message>
         <source>Errors against l_max, facets and weights, and the polyhedra</source>
         <translation>Fehler gegen l_max, Facetten und Gewichte, und die Polyeder</translation>
+    </message>
+    <message>
+        <source>Errors of digitised grains</source>
+        <translation>Fehler digitalisierter Körner</translation>
     </message>
     <message>
         <source>Errors of fit and polyhedron</source>
@@ -2292,12 +2340,20 @@
         <translation>Ordner für Abbildungen und Tabellen</translation>
     </message>
     <message>
+        <source>Folder of meshes</source>
+        <translation>Ordner mit Netzen</translation>
+    </message>
+    <message>
         <source>Folder of r&amp;uns …</source>
         <translation>Ordner der &amp;Läufe …</translation>
     </message>
     <message>
         <source>Folder of runs</source>
         <translation>Ordner der Läufe</translation>
+    </message>
+    <message>
+        <source>Folder of table and picture</source>
+        <translation>Ordner für Tabelle und Bild</translation>
     </message>
     <message>
         <source>Folder of the results</source>
@@ -2598,6 +2654,10 @@
     <message>
         <source>How much detail: l_max</source>
         <translation>Wie viele Einzelheiten: l_max</translation>
+    </message>
+    <message>
+        <source>How near simulants, and the best mixture of them, are to this sample</source>
+        <translation>Wie nahe Simulate und ihre beste Mischung dieser Probe sind</translation>
     </message>
     <message>
         <source>Hysteresis</source>
@@ -2936,6 +2996,10 @@
         <translation>Längeneinheit</translation>
     </message>
     <message>
+        <source>Length unit of files without one</source>
+        <translation>Längeneinheit von Dateien ohne eigene</translation>
+    </message>
+    <message>
         <source>Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE.</source>
         <translation>Längeneinheit von Dateien ohne eigene: um, mm, m, nm, cm oder voxel:GRÖSSE.</translation>
     </message>
@@ -3104,6 +3168,14 @@
         <translation>Maske</translation>
     </message>
     <message>
+        <source>Match</source>
+        <translation>Vergleich</translation>
+    </message>
+    <message>
+        <source>Match again</source>
+        <translation>Neu vergleichen</translation>
+    </message>
+    <message>
         <source>Matched to the sample</source>
         <translation>Der Probe nachgebildet</translation>
     </message>
@@ -3114,6 +3186,14 @@
     <message>
         <source>Material and cylinder</source>
         <translation>Material und Zylinder</translation>
+    </message>
+    <message>
+        <source>Materials that are compared with the sample</source>
+        <translation>Materialien, mit denen die Probe verglichen wird</translation>
+    </message>
+    <message>
+        <source>Materials to compare with</source>
+        <translation>Materialien zum Vergleich</translation>
     </message>
     <message>
         <source>Maximum degree</source>
@@ -3256,6 +3336,10 @@
         <translation>Netz</translation>
     </message>
     <message>
+        <source>Meshes and tables (*.stl *.ply *.obj *.zip *.csv *.tsv *.txt)</source>
+        <translation>Netze und Tabellen (*.stl *.ply *.obj *.zip *.csv *.tsv *.txt)</translation>
+    </message>
+    <message>
         <source>Message</source>
         <translation>Meldung</translation>
     </message>
@@ -3322,6 +3406,10 @@
     <message>
         <source>Mirror images</source>
         <translation>Spiegelbilder</translation>
+    </message>
+    <message>
+        <source>Mixture</source>
+        <translation>Mischung</translation>
     </message>
     <message>
         <source>Mixture of Gaussian fields</source>
@@ -3426,6 +3514,10 @@
     <message>
         <source>Nanometres (nm)</source>
         <translation>Nanometer (nm)</translation>
+    </message>
+    <message>
+        <source>Nearest</source>
+        <translation>Nächstes</translation>
     </message>
     <message>
         <source>Nearest particles whose ellipsoid may be used.</source>
@@ -4540,6 +4632,10 @@
         <translation>Anmerkungen</translation>
     </message>
     <message>
+        <source>Remove</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
         <source>Remove all examples</source>
         <translation>Alle Beispiele entfernen</translation>
     </message>
@@ -5006,6 +5102,10 @@
     <message>
         <source>Saved; use it with: {command}</source>
         <translation>Gespeichert; verwenden mit: {command}</translation>
+    </message>
+    <message>
+        <source>Saving</source>
+        <translation>Speichern</translation>
     </message>
     <message>
         <source>Saving labels</source>
@@ -5726,6 +5826,10 @@
     <message>
         <source>Table 2</source>
         <translation>Tabelle 2</translation>
+    </message>
+    <message>
+        <source>Table and picture are in {folder}.</source>
+        <translation>Tabelle und Bild sind in {folder}.</translation>
     </message>
     <message>
         <source>Table of errors</source>
@@ -7426,6 +7530,10 @@
     <message>
         <source>from</source>
         <translation>von</translation>
+    </message>
+    <message>
+        <source>g in 100 g of the mixture</source>
+        <translation>g in 100 g der Mischung</translation>
     </message>
     <message>
         <source>glTF (Blender)</source>

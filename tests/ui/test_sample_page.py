@@ -2,19 +2,25 @@
 
 import csv
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import QItemSelectionModel, QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QFileDialog
 
 from regolith_studio.descriptors.describe import describe
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.session import Session
 from regolith_studio.ui.appearance import FONT_SIZE
+from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
+from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.widgets.labels import short_number
 
@@ -120,6 +126,44 @@ def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
     page.keep_selected_particles()
     assert [entry.id for entry in window.session.particles] == ["bead-1", "bead-2"]
     wait(lambda: len(page.table.particles.rows) == 2)
+
+
+def ellipsoids(rng, scale, n):
+    ball = icosphere(2)
+    axes = scale * np.exp(0.2 * rng.standard_normal((n, 3))) * (1.3, 1.0, 0.8)
+    return [Particle(f"e{k}", Mesh(ball.vertices * row, ball.faces)) for k, row in enumerate(axes)]
+
+
+def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path, monkeypatch):
+    """The sample is one part of fine and three of coarse grains; so is the nearest mixture, within 15 %."""
+    rng = np.random.default_rng(0)
+    fine, coarse = ellipsoids(rng, 10, 60), ellipsoids(rng, 30, 60)
+    names = []
+    for name, grains in (("fine", fine), ("coarse", coarse)):
+        rows = [
+            [describe(each)[key] for key in ("equivalent_radius", "sphericity", "aspect_ratio")]
+            for each in grains
+        ]
+        lines = ["equivalent_radius (um),sphericity,aspect_ratio", *(",".join(map(str, row)) for row in rows)]
+        names.append(str(tmp_path / f"{name}.csv"))
+        Path(names[-1]).write_text("\n".join(lines))
+    monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *_: (names, ""))
+    page.commands()["match"]()
+    panel = page.match
+    assert page.plots.currentWidget() is panel
+    panel.start()  # twelve shipped particles
+    wait(lambda: panel.card.record.state is ResultState.FAILED)
+    assert "12 particles; a comparison needs at least 20" in panel.card.record.note
+    sample = (*fine[:20], *coarse[:60])
+    monkeypatch.setattr(Session, "open_particles", property(lambda _: sample))
+    panel.start()
+    wait(lambda: panel.found is not None, SECONDS)
+    assert panel.found.match.parts[0].number_share == pytest.approx(0.25, abs=0.15)
+    assert panel.table.rows.rowCount() == 3
+    assert not panel.picture.pixmap().isNull()
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path / "out"))
+    panel.save()
+    wait(lambda: (tmp_path / "out" / "match.csv").is_file())
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Figures of studies, drawn by matplotlib and written as PNG and SVG, the same bytes each time."""
 
 import re
+from io import BytesIO
 from pathlib import Path
 from threading import RLock
 
@@ -21,6 +22,15 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
         with matplotlib.rc_context({"svg.hashsalt": "regolith-studio"}):
             figure.savefig(drawing, metadata={"Date": None})
     return picture, drawing
+
+
+def png_of(figure: Figure) -> bytes:
+    """The figure as it is shown in a window."""
+    FigureCanvasAgg(figure)
+    stream = BytesIO()
+    with MATPLOTLIB_LOCK:
+        figure.savefig(stream, dpi=DOTS_PER_INCH)
+    return stream.getvalue()
 
 
 def as_written(name: str) -> str:

@@ -17,6 +17,11 @@ PAGE = Page(
         ActionSpec("copy_table", N_("&Copy table"), tip=N_("Copy the rows for a spreadsheet")),
         ActionSpec("explore", N_("Show in &Explore"), icon="page_explore", shortcut="Ctrl+Return"),
         ActionSpec("keep", N_("&Keep only these"), tip=N_("Close all particles but the chosen rows")),
+        ActionSpec(
+            "match",
+            N_("Co&mpare with materials …"),
+            tip=N_("How near simulants, and the best mixture of them, are to this sample"),
+        ),
         ActionSpec("clear_filter", N_("Clear &filter"), shortcut="Ctrl+Shift+F"),
     ),
 )

@@ -40,6 +40,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, health_sentences, sample_table
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.sample.match import MatchPanel
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import localized, number_text, rich, tr, translate, with_decimal_point
@@ -271,7 +272,7 @@ class SamplePage(PageWidget):
         self.table.setAccessibleName(tr("All particles"))
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.statistics = StatisticsPanel()
-        self.scatter = ScatterPanel()
+        self.scatter, self.match = ScatterPanel(), MatchPanel(self._context)
         self.health = HealthPanel()
         self.frame = ViewFrame(
             make_view(self._context.views, current_theme().surroundings), "sample_view", colour="particle"
@@ -288,6 +289,7 @@ class SamplePage(PageWidget):
             "copy_table": self.copy_table,
             "explore": lambda: self._context.go("explore"),
             "keep": self.keep_selected_particles,
+            "match": self.match_materials,
             "clear_filter": self.filter.clear,
         }
 
@@ -334,6 +336,11 @@ class SamplePage(PageWidget):
             return
         self._session.keep(chosen)
 
+    def match_materials(self) -> None:
+        """Show the comparison with other materials, and ask for them."""
+        self.plots.setCurrentWidget(self.match)
+        self.match.ask_files()
+
     def _place(self) -> None:
         left = QWidget()
         column = QVBoxLayout(left)
@@ -346,7 +353,11 @@ class SamplePage(PageWidget):
         parts = stacked([self.table, self.reports], [490, 300], stretch=0)
         parts.setObjectName("sample_rows")
         column.addWidget(parts, 1)
-        plots = [(self.statistics.distribution, tr("Distribution")), (self.scatter, tr("Scatter plot"))]
+        plots = [
+            (self.statistics.distribution, tr("Distribution")),
+            (self.scatter, tr("Scatter plot")),
+            (self.match, tr("Match")),
+        ]
         self.plots = tabs("sample_plots", plots)
         right = equal_parts(Qt.Orientation.Vertical, [self.frame, self.plots])
         right.setObjectName("sample_pictures")
