@@ -102,10 +102,6 @@ def test_that_what_is_proven_is_true_on_a_fine_grid(seed: int) -> None:
         assert at == pytest.approx(ratio.min(), rel=1e-4)
 
 
-def test_that_two_polynomials_meet_where_they_are_equal() -> None:
-    one, two = Quartic(0.0, 1.0, 0.0, 0.0, 0.0), Quartic(0.25, 0.0, 0.0, 0.0, 0.0)
-    assert crossing(one, two, 0.0, 1.0) == pytest.approx(0.25, abs=1e-13)
-    assert crossing(one, two, 0.5, 1.0) == 0.75
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -120,38 +116,10 @@ def test_that_no_span_of_the_table_is_longer_than_the_solid_is_wide(seed: int) -
         assert 0.9 * width < abs(way @ np.array(span_near(table, tuple(way)))) <= width * (1 + 1e-14)
 
 
-@pytest.mark.parametrize("count", [8, 500])
-def test_that_the_table_holds_the_farthest_vertices_along_the_middles_of_its_cells(count: int) -> None:
-    points = np.random.default_rng(count).normal(size=(3, count))
-    table = span_table(points)
-    assert table.spans.shape == (3 * table.cells**2, 3)
-    middles = (2.0 * np.arange(table.cells) + 1.0) / table.cells - 1.0
-    for k in range(3):
-        u, v = np.meshgrid(middles, middles, indexing="ij")
-        directions = np.roll(np.column_stack([np.ones(u.size), u.ravel(), v.ravel()]), k, axis=1)
-        along = (directions * table.spans[k * u.size : (k + 1) * u.size]).sum(axis=1)
-        assert along == pytest.approx(np.ptp(directions @ points, axis=1), rel=1e-8)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_that_the_least_box_on_a_curve_is_that_of_a_fine_grid(seed: int) -> None:
-    points = random_polyhedron(seed, 12).vertices
-    curve, _, _ = random_curve(seed)
-    x = np.linspace(curve.low, curve.high, 2_001)
-    volumes = [np.prod(np.ptp(points @ np.array(frame_on(curve, each)).T, axis=0)) for each in x]
-    volume, _ = min_on_curve(on(points), span_table(on(points)), curve, 0, 0, 0.0, empty_record(np.inf))
-    assert volume == pytest.approx(min(volumes), rel=1e-4)
-    assert volume <= min(volumes) * (1 + 1e-12)
 
 
-def test_that_a_facet_with_an_edge_that_is_ruled_out_is_not_asked() -> None:
-    """An edge belongs to two of the twelve facets."""
-    hull = random_polyhedron(0, 12).hull
-    facets = closed_facets(hull)
-    worth = np.full(len(facets.edges), True)
-    assert facets_with_all_edges(facets, worth).all()
-    worth[0] = False
-    assert set(np.flatnonzero(~facets_with_all_edges(facets, worth))) == set(facets.edges[0, 2:].tolist())
 
 
 @pytest.mark.slow
@@ -189,14 +157,6 @@ def test_that_no_box_is_narrower_than_the_bound_on_its_third_side() -> None:
     assert useful > 100
 
 
-@pytest.mark.parametrize("m", [1, 256, 700])
-def test_that_looking_along_many_directions_finds_the_ends_of_each(m: int) -> None:
-    rng = np.random.default_rng(m)
-    points, directions = rng.normal(size=(3, 50)), rng.normal(size=(3, m))
-    reach = directions.T @ points
-    top, bottom = extreme_vertices_of_each(points, directions)
-    assert top.tolist() == reach.argmax(axis=1).tolist()
-    assert bottom.tolist() == reach.argmin(axis=1).tolist()
 
 
 def test_that_a_facet_on_which_nothing_is_said_to_stand_bears_no_smaller_box() -> None:
