@@ -5,13 +5,10 @@ import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.minimum_box import empty_record, min_on_curve
 from regolith_studio.geometry.minimum_box.edge_pair import (
     Curve,
-    Quartic,
     all_positive,
     argmin_ratio,
-    crossing,
     curve_between,
     denominator,
     factors_of,
@@ -24,10 +21,8 @@ from regolith_studio.geometry.minimum_box.hull_topology import (
     Facets,
     arcs_of,
     extreme_vertices,
-    extreme_vertices_of_each,
     facet_excluded,
     facets_of_hull,
-    facets_with_all_edges,
     min_third_extent,
     span_near,
     span_table,
@@ -102,8 +97,6 @@ def test_that_what_is_proven_is_true_on_a_fine_grid(seed: int) -> None:
         assert at == pytest.approx(ratio.min(), rel=1e-4)
 
 
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_that_no_span_of_the_table_is_longer_than_the_solid_is_wide(seed: int) -> None:
     points = random_polyhedron(seed, 20).vertices
@@ -114,12 +107,6 @@ def test_that_no_span_of_the_table_is_longer_than_the_solid_is_wide(seed: int) -
         width = np.ptp(points @ way)
         assert way @ (points[top] - points[bottom]) == pytest.approx(width, rel=1e-14)
         assert 0.9 * width < abs(way @ np.array(span_near(table, tuple(way)))) <= width * (1 + 1e-14)
-
-
-
-
-
-
 
 
 @pytest.mark.slow
@@ -155,8 +142,6 @@ def test_that_no_box_is_narrower_than_the_bound_on_its_third_side() -> None:
             assert np.ptp(c @ facets.points) >= bound * (1.0 - 1e-12)
             useful += 1
     assert useful > 100
-
-
 
 
 def test_that_a_facet_on_which_nothing_is_said_to_stand_bears_no_smaller_box() -> None:
