@@ -415,6 +415,7 @@ def study(
         ),
     ] = False,
     particles: Particles = 1000,
+    bond: Bond = 0.0,
     how: CaseOptions,
     runner: Runner = "processes",
     address: Address = "",
@@ -439,7 +440,7 @@ def study(
         raise typer.BadParameter("--against compares datasets as they are; leave out --vary.")
     check_results_folder(output, datasets)
     keys, statistics = _statistics(against, datasets)
-    request = how.request(n_particles=particles, seed=seed)
+    request = how.request(n_particles=particles, bond_number=bond, seed=seed)
     rows = []
     for folder in datasets:
         name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"

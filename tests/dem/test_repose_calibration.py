@@ -28,8 +28,7 @@ from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, ca
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.studies.figures import repose as figures
 from regolith_studio.studies.repose_calibration import angle_target, calibration_document, drum_target
-from tests.dem.cone_engine import cone_engine, true_angle
-from tests.dem.instant_engine import tree, write_figure
+from tests.dem.cone_engine import cone_engine, tree, true_angle, write_figure
 
 N = 300
 Command = Callable[..., int]

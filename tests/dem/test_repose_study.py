@@ -14,27 +14,24 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.evaluation import EvaluationSettings
-from regolith_studio.dem.initial_packing import loose_column
-from regolith_studio.dem.run_io import find_runs, save_snapshot
-from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.run_io import find_runs
 from regolith_studio.dem.verification.bodies import cuboid
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import ReposeVariant, study_repose
 from regolith_studio.studies.figures import repose as figures
-from tests.dem.instant_engine import SMALL, instant_engine, write_figure
-from tests.dem.packings import cone
+from tests.dem.cone_engine import cone_engine, engine_of_cones, write_figure
 
+SMALL = "-n 40 --measure min_particles=40 --test mass=0.003"
 RUNS = ["static_friction_0.2_seed0", "static_friction_0.8_seed0"]
 
 
 @pytest.fixture
 def words(boxes_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """A study on an engine that needs no time, but for what varies."""
-    monkeypatch.setattr(repose_jobs, "run_engine", instant_engine)
+    monkeypatch.setattr(repose_jobs, "run_engine", cone_engine)
     monkeypatch.setattr(figures, "write_figure", write_figure)
     return ["repose", "study", str(boxes_folder), "-o", str(tmp_path / "study"), *SMALL.split()]
 
@@ -57,7 +54,7 @@ def test_that_runs_of_a_stopped_study_wait_in_the_journal_for_the_others(
         begun.append(task)
         if len(begun) == 2:
             raise KeyboardInterrupt
-        return (yield from instant_engine(*task))  # type: ignore[arg-type]
+        return (yield from cone_engine(*task))  # type: ignore[arg-type]
 
     monkeypatch.setattr(repose_jobs, "run_engine", engine)
     both = [*words, "--vary", "static_friction=0.2,0.8"]
@@ -157,18 +154,10 @@ def test_that_a_study_is_written_beside_files_of_others(words: list[str], tmp_pa
     assert not (study / "journal").exists()
 
 
-def heap_by_aspect_ratio(
-    _key: str, prepared: PreparedCase, _settings: object, folder: Path, _threads: int
-) -> Iterator[object]:
-    """A cone of 20 degrees and 5 more for every 1 of the aspect ratio of the cuboids."""
+def angle_by_aspect_ratio(prepared: PreparedCase) -> float:
+    """20 degrees, and 5 more for every 1 of the aspect ratio of the cuboids."""
     extents = np.ptp(prepared.shapes[0], axis=0)
-    column = loose_column(prepared)
-    points = prepared.mean_diameter * cone(20 + 5 * extents.max() / extents.min(), len(prepared), 1)
-    heap = ParticleState(points, column.diameters, column.orientations, column.class_index)
-    save_snapshot(folder, 0, heap)
-    yield Snapshot(heap, 0.5, "half")
-    n = len(prepared)
-    return SimulationResult(heap, RunChecks(n, n, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55, 0.0), 1, 1.0)
+    return float(20 + 5 * extents.max() / extents.min())
 
 
 def dataset_of_cuboids(folder: Path, aspect_ratio: float, boxes: Dataset) -> str:
@@ -180,7 +169,7 @@ def dataset_of_cuboids(folder: Path, aspect_ratio: float, boxes: Dataset) -> str
 def test_that_angles_of_datasets_give_a_surface_over_their_aspect_ratios(
     boxes: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(repose_jobs, "run_engine", heap_by_aspect_ratio)
+    monkeypatch.setattr(repose_jobs, "run_engine", engine_of_cones(angle_by_aspect_ratio))
     monkeypatch.setattr(figures, "write_figure", write_figure)
     folders = [dataset_of_cuboids(tmp_path / "data", ratio, boxes) for ratio in (1.0, 1.5, 2.0)]
     study = tmp_path / "study"

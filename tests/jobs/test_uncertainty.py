@@ -25,8 +25,7 @@ from regolith_studio.jobs.uncertainty import UncertaintyRequest, measure_uncerta
 from regolith_studio.jobs.uncertainty_chain import Chain
 from regolith_studio.studies.figures import repose as figures
 from regolith_studio.studies.uncertainty import CONFIDENCE, KEYS, OUTPUTS
-from tests.dem.cone_engine import cone_engine, true_angle
-from tests.dem.instant_engine import write_figure
+from tests.dem.cone_engine import cone_engine, true_angle, write_figure
 
 QUICK = CoarseningRequest(LossWeights.of(volume=1.0), 12, "quadric")
 SETTINGS: dict[str, Any] = {"coarsening": QUICK, "n_representatives": 3}
