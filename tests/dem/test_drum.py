@@ -17,7 +17,6 @@ from regolith_studio.dem.lifting_cylinder import LiftingRun, engine_state, resum
 from regolith_studio.dem.rotating_drum import TURNING, DrumSolver
 from regolith_studio.dem.snapshot import TURN, ParticleState
 from regolith_studio.dem.verification.bodies import cuboid, scene
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import result_of
 
@@ -170,10 +169,3 @@ def test_that_too_few_moments_are_refused(boxes) -> None:
     with pytest.raises(NotAPileError) as refusal:
         measure_drum(prepared, [state] * 3)
     assert refusal.value.status == "too few moments"
-
-
-def test_that_values_out_of_range_are_refused() -> None:
-    with pytest.raises(InputError):
-        DrumRotation(rpm=0.0)
-    with pytest.raises(InputError):
-        DrumRotation(moments=3)

@@ -16,7 +16,7 @@ from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
-from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import RunChecks, SimulationResult
@@ -56,7 +56,6 @@ from regolith_studio.jobs.repose_study import (
     with_value,
 )
 from regolith_studio.messages import Message
-from regolith_studio.studies.figures.repose import write_repose_study
 from tests.dem.packings import cone
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
@@ -196,35 +195,15 @@ def test_that_the_snapshots_tell_the_whole_test(finished: Path) -> None:
     assert (final.points[:, 2] > 0.0).all()
 
 
-def test_that_the_same_seed_gives_the_same_pile(finished: Path, boxes_folder: Path) -> None:
-    prepared = prepare(read_dataset(boxes_folder), CASE)
-    steps = ENGINES["mujoco"].simulate(prepared, QUICK)
-    moments = []
-    while True:
-        try:
-            moments.append(next(steps))
-        except StopIteration as end:
-            ending = end.value
-            break
-    assert isinstance(ending, SimulationResult)
-    assert np.array_equal(ending.particles.points, read_particle_state(finished / "final.npz").points)
-    assert [moment.share for moment in moments] == sorted(moment.share for moment in moments)
-
-
 def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, tmp_path: Path) -> None:
     """The folder holds the run already, so nothing is simulated; a changed case would be."""
     shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
-    row = ReposeVariant("static_friction", 0.8, boxes_folder, ORDER)
-    steps = study_repose([row], tmp_path)
-    events = list(steps)
-    assert not [step for step in events if isinstance(step, Progress) and "simulated" in step.message]
-    study = events[-1].value
-    [found] = [each.document["measurement"]["status"] for each in study.runs]
-    assert found in NO_ANGLE
-    files = {path.name for path in write_repose_study(study, tmp_path / "figures")}
-    assert files == {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")}
-    other = replace(ORDER, case=replace(CASE, contact=ContactParameters(static_friction=0.1)))
-    fresh = study_repose([replace(row, request=other)], tmp_path)
+    steps = run_repose_study(ReposeStudyRequest("static_friction", (0.8,), ORDER, boxes_folder), tmp_path)
+    assert not [step for step in steps if isinstance(step, Progress) and "simulated" in step.message]
+    files = {path.name for path in tmp_path.iterdir()}
+    assert {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")} < files
+    other = with_value(ORDER, "static_friction", 0.1)
+    fresh = study_repose([ReposeVariant("static_friction", 0.8, boxes_folder, other)], tmp_path)
     assert any(isinstance(step, Progress) and "simulated" in step.message for step in fresh)
     fresh.close()
 
