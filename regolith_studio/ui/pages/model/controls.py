@@ -10,6 +10,7 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
     QFormLayout,
+    QGridLayout,
     QHBoxLayout,
     QLabel,
     QLineEdit,
@@ -20,7 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.descriptors.distributions import Distribution, kolmogorov_smirnov_distance, wasserstein_1
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
@@ -336,17 +337,29 @@ WAITING = N_("Draw particles: their distributions appear here, over those of the
 SHARE = N_("Share at or below [%]")
 
 
+SIX = "six"
+"""Key of the small plots of the descriptors of the loss."""
+
+
 class DistributionsPanel(QWidget):
-    """Cumulative distributions as step functions."""
+    """Cumulative distributions as step functions: of six descriptors beside each other, or of one."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_distributions")
-        self.key = ChoiceBox("model_distribution_of", tr("Descriptor"), {k: CATALOGUE[k].label for k in KEYS})
+        labels = {SIX: N_("Six descriptors")} | {key: CATALOGUE[key].label for key in KEYS}
+        self.key = ChoiceBox("model_distribution_of", tr("Descriptor"), labels)
         self.weighting = ChoiceBox(
             "model_distribution_weighting", tr("Weighting of the particles"), WEIGHTINGS
         )
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
+        self.small = {key: CurvePlot(_axis_label(key), "", "") for key in LOSS_KEYS}
+        self._together = QWidget()
+        grid = QGridLayout(self._together)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(0)
+        for place, plot in enumerate(self.small.values()):
+            grid.addWidget(plot, place // 3, place % 3)
         self.words, self.assessment = ElidedLabel(role="hint"), ElidedLabel(role="hint")
         self.table = StudyTableView("model_draws_in_noise", tr("Distances of the draws"))
         self.weighting.setMinimumContentsLength(26)
@@ -365,9 +378,10 @@ class DistributionsPanel(QWidget):
             below.setContentsMargins(8, 0, 8, 0)
             below.addWidget(label)
             layout.addLayout(below)
-        parts = side_by_side([self.plot, self.table], [500, 400], stretch=0)
-        parts.setObjectName("model_distribution_parts")
-        layout.addWidget(parts, 1)
+        self._one = side_by_side([self.plot, self.table], [500, 400], stretch=0)
+        self._one.setObjectName("model_distribution_parts")
+        layout.addWidget(self._one, 1)
+        layout.addWidget(self._together, 1)
         for box in (self.key, self.weighting):
             box.currentIndexChanged.connect(lambda _: self._show())
         self.show_compared(None)
@@ -388,21 +402,38 @@ class DistributionsPanel(QWidget):
         self._show()
 
     def _show(self) -> None:
-        row = CATALOGUE[self.key.value()]
-        symbol = rich_symbol(row.symbol)
-        self.plot.set_labels(f"{tr(row.label)} {symbol}{row.unit_suffix}", tr(SHARE))
+        together = self.key.value() == SIX and self._compared is not None
+        self._together.setVisible(together)
+        self._one.setVisible(not together)
+        self.words.setVisible(not together)
         if self._compared is None:
             self.plot.set_curves([])
             self.words.setText("")
-            return
-        measured, drawn = self._compared.distributions(self.key.value(), self.weighting.value())
+        elif together:
+            for key, plot in self.small.items():
+                plot.set_curves(self._curves(key)[0])
+        else:
+            row = CATALOGUE[self.key.value()]
+            self.plot.set_labels(f"{tr(row.label)} {_axis_label(row.key)}", tr(SHARE))
+            curves, measured, drawn = self._curves(row.key)
+            self.plot.set_curves(curves)
+            self.words.setText(distance_text(measured, drawn, row.unit_symbol))
+
+    def _curves(self, key: str) -> tuple[list[PlotCurve], Distribution | None, Distribution]:
+        """Curves and distributions of the measured particles, where there are any, and of the drawn ones."""
+        assert self._compared is not None, "particles are drawn"
+        measured, drawn = self._compared.distributions(key, self.weighting.value())
         theme = self.plot.theme
         curves = [_step_curve(tr("{count:,} drawn", count=len(drawn.values)), theme.fit, drawn)]
         if measured is not None:
             label = tr("{count:,} measured", count=len(measured.values))
             curves.insert(0, _step_curve(label, theme.particle, measured))
-        self.plot.set_curves(curves)
-        self.words.setText(distance_text(measured, drawn, row.unit_symbol))
+        return curves, measured, drawn
+
+
+def _axis_label(key: str) -> str:
+    row = CATALOGUE[key]
+    return f"{rich_symbol(row.symbol)}{row.unit_suffix}"
 
 
 def distance_text(measured: Distribution | None, drawn: Distribution, unit: str = "") -> str:
