@@ -1,7 +1,8 @@
 """Progress of a coarsening: the steps of a method, and the proposals of simulated annealing."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -93,6 +94,9 @@ class CoarseningProgress:
         The particle's centroid in its own frame, shape (3,).
     recent
         The last steps with this one, for a listener who is not told of each.
+    achieved, errors, jaccard_distance
+        Descriptors of the polyhedron, their relative errors (Eq. 8) and Eq. 7 as it follows from the loss,
+        NaN without weight; empty where the step was not measured.
     """
 
     step: int
@@ -101,6 +105,9 @@ class CoarseningProgress:
     polyhedron: Polyhedron | None
     centre: FloatArray
     recent: "tuple[CoarseningProgress, ...]" = ()
+    achieved: Mapping[str, float] = field(default_factory=dict)
+    errors: Mapping[str, float] = field(default_factory=dict)
+    jaccard_distance: float = math.nan
 
     @property
     def mesh(self) -> Mesh | None:

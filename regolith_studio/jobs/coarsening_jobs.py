@@ -7,15 +7,16 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from regolith_studio.coarsening.coarsen import coarsening_steps
+from regolith_studio.coarsening.coarsen import coarsening_steps, in_unit
 from regolith_studio.coarsening.core.line_overlap import compound_distance
+from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, FACETS_LIMITS
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
-from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.describe import Descriptors, describe, relative_errors
 from regolith_studio.errors import JobCancelled
@@ -209,6 +210,20 @@ def _target(mesh: Mesh) -> Target:
     return Target.of(mesh)
 
 
+MEASURED_EVERY = 0.05
+"""Seconds between two steps whose descriptors are measured: a polyhedron takes some milliseconds."""
+
+
+def _measured_step(step: CoarseningProgress, target: Target, weights: LossWeights) -> CoarseningProgress:
+    """A step with the descriptors of its polyhedron, and the Jaccard distance that is left of its loss."""
+    assert step.polyhedron is not None, "there is something to be measured"
+    achieved = describe(step.polyhedron, LOSS_KEYS)
+    errors = relative_errors(in_unit(target.descriptors, target.scale), achieved)
+    rest, weight = step.loss - loss(weights, errors, 0.0), weights[JACCARD]
+    distance = min(max(rest / weight, 0.0), 1.0) if weight else float("nan")
+    return replace(step, achieved=achieved, errors=errors, jaccard_distance=distance)
+
+
 def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, None, Any]:
     common: dict[str, Any] = {
         "method": request.method,
@@ -221,7 +236,7 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, N
         steps = coarsening_steps(_target(mesh), request.n_facets, **common)
     else:
         steps = fewest_facets(_target(mesh), request.largest_error, **common)
-    trials, recent = "", deque[CoarseningProgress](maxlen=N_RECENT)
+    trials, recent, due = "", deque[CoarseningProgress](maxlen=N_RECENT), 0.0
     while True:
         try:
             step = next(steps)
@@ -230,6 +245,9 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, N
         if isinstance(step, Trial):
             trials = f"{step.n_facets} facets: {100 * step.largest_error:.2g} %"
             continue
+        if step.polyhedron is not None and time.monotonic() >= due:
+            step = _measured_step(step, _target(mesh), request.weights)
+            due = time.monotonic() + MEASURED_EVERY
         recent.append(step)
         yield Partial(replace(step, recent=tuple(recent)))
         yield Progress(step.step, step.steps, trials)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.coarsening.lower_bounds import bounds_in_force
+from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
@@ -58,6 +59,15 @@ def assess_polyhedron(
         coarsened.jaccard_distance,
         join_messages(parts),
     )
+
+
+def assess_step(step: CoarseningProgress, weights: LossWeights) -> PolyhedronAssessment | None:
+    """The assessment on a step of a coarsening that runs; ``None`` where its polyhedron was not measured."""
+    if not step.errors:
+        return None
+    errors = np.array([step.errors[key] for key in LOSS_KEYS if weights[key]])
+    error = float(np.sqrt(np.mean(errors**2))) if len(errors) else float("nan")
+    return PolyhedronAssessment(step.loss, error, step.jaccard_distance, N_("Best so far."))
 
 
 def redundant_planes(coarsened: CoarseningResult) -> str | None:

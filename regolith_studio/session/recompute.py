@@ -80,11 +80,13 @@ class LiveResults:
         self._fits: dict[tuple[Any, ...], HarmonicFit] = {}
         self._particle_descriptors: dict[tuple[Any, ...], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
+        self._last: tuple[CoarseningResult, Choices] | None = None
         self._trials: dict[tuple[Any, ...], dict[int, float]] = {}
         self._has_shown = False
 
     def clear_cache(self) -> None:
         """Drop cached results, because ids refer to other particles now."""
+        self._last = None
         self._fits.clear()
         self._trials.clear()
         self._particle_descriptors.clear()
@@ -246,7 +248,7 @@ class LiveResults:
         if before is not None and before.step <= step.step:  # of the same run, whose later searches add steps
             step = dataclasses.replace(step, steps=max(before.steps, step.steps))
         self._losses.append((step.step, step.loss))
-        best = step if step.polyhedron else self._session.results.best
+        best = self._better_of_last_result(step) if step.polyhedron else self._session.results.best
         history = tuple(self._losses)
         self._session.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
         self._has_shown = self._has_shown or step.polyhedron is not None
@@ -254,7 +256,32 @@ class LiveResults:
             self._board.stop_queue(Kind.COARSENING)
             self._advance()
 
+    def _better_of_last_result(self, step: "CoarseningProgress") -> "CoarseningProgress":
+        """The step, or the last result where only weights have changed and its loss with them is smaller."""
+        from regolith_studio.coarsening.loss import loss
+
+        choices = self._session.choices
+        if self._last is None:
+            return step
+        last, made_with = self._last
+        alike = made_with.replaced(weights=choices.weights)
+        if _key(Kind.COARSENING, alike) != _key(Kind.COARSENING, choices):
+            return step
+        now = loss(choices.weights, last.errors, last.jaccard_distance)
+        if now >= step.loss:
+            return step
+        return dataclasses.replace(
+            step,
+            loss=now,
+            polyhedron=last.polyhedron,
+            centre=last.centre,
+            achieved=last.achieved,
+            errors=last.errors,
+            jaccard_distance=last.jaccard_distance,
+        )
+
     def _keep_coarsened(self, done: "CoarseningResult") -> None:
+        self._last = done, self._session.choices
         history = tuple(enumerate(done.loss_history))
         fewer = self._fewer_facets(done)
         self._session.update(

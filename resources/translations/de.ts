@@ -800,6 +800,10 @@
         <translation>Vor der Reparatur:</translation>
     </message>
     <message>
+        <source>Best so far.</source>
+        <translation>Das bisher beste.</translation>
+    </message>
+    <message>
         <source>Best-fit ellipsoid</source>
         <translation>Angepasstes Ellipsoid</translation>
     </message>
@@ -5390,6 +5394,10 @@
     <message>
         <source>Single diameters, the same for all</source>
         <translation>Einzelne Durchmesser, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Six descriptors</source>
+        <translation>Sechs Deskriptoren</translation>
     </message>
     <message>
         <source>Six particles from the selected one on, and below them their polyhedra, one row per loss function.</source>

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.progress import CoarseningProgress
+from regolith_studio.coarsening.weights import WEIGHT_KEYS, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -198,6 +199,26 @@ def test_that_what_a_user_has_stopped_is_not_being_computed(session: Session, he
     held.all()
     assert not session.results.failures
     assert session.results.coarsened is not None
+
+
+def test_that_the_last_result_stays_where_other_weights_begin_with_a_worse_polyhedron(
+    session: Session, held: Held
+) -> None:
+    last = session.results.coarsened
+    assert last is not None
+    weights = LossWeights(tuple(3.0 if key == "volume" else 1.0 for key in WEIGHT_KEYS))
+    best = []
+    for changes, loss in (({"weights": weights}, 9.0), ({"weights": weights, "n_facets": 9}, 9.0)):
+        session.choose(**changes)
+        step = CoarseningProgress(0, 1, loss, last.polyhedron, last.centre)
+        held.waiting["coarsening"][-1].listener(Partial(step))
+        best.append(session.results.best)
+        held.all()
+    assert best[0] is not None
+    assert best[0].loss == pytest.approx(last.loss + 2 * last.errors["volume"])
+    assert best[0].errors == last.errors
+    assert best[1] is not None
+    assert best[1].loss == 9.0, "a polyhedron with other facets says nothing"
 
 
 def test_that_another_particle_has_no_curve_of_the_last(session: Session, held: Held) -> None:

@@ -14,13 +14,17 @@ from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSli
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.coarsening.weights import KEPT, LossWeights, presets
-from regolith_studio.descriptors.describe import describe
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.ray_casting import jaccard_distance
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit_options import AUTOMATIC
 from regolith_studio.harmonics.radius_function import REFERENCES, RULES
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one
+from regolith_studio.jobs.events import Partial
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.sample_table import health_word
@@ -30,7 +34,7 @@ from regolith_studio.ui.activity import IDLE, TasksPanel
 from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
 from regolith_studio.ui.pages.explore.page import ParticleListPanel
 from regolith_studio.ui.pages.explore.panels import AssessmentPanel, FitPanel, LossPanel
-from regolith_studio.ui.pages.explore.plots import LossCurvePanel
+from regolith_studio.ui.pages.explore.plots import DescriptorTablePanel, ErrorBarsPanel, LossCurvePanel
 from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.widgets.forms import SettingsForm
@@ -264,6 +268,24 @@ def test_that_the_verdict_on_one_particle_never_stands_for_another(shown):
     panel.show_results(Results(best=found), choices.replaced(selected="b"))
     assert panel.figures[0].text() == "–"
     assert "not finished" in panel.sentence.text()
+
+
+def test_that_loss_and_errors_of_the_best_polyhedron_so_far_are_live(shown):
+    card, bars, table = shown(AssessmentPanel()), shown(ErrorBarsPanel()), shown(DescriptorTablePanel())
+    choices, target = Choices(method="annealing", selected="a"), icosphere(2)
+    request = CoarseningRequest(choices.weights, 12, "annealing", (("iterations", 5),))
+    step = next(each.value for each in coarsen_one(target, request) if isinstance(each, Partial))
+    expected = relative_errors(describe(target), describe(step.mesh))
+    assert step.errors == pytest.approx({key: expected[key] for key in LOSS_KEYS}, abs=1e-6)
+    assert step.jaccard_distance == pytest.approx(jaccard_distance(target, step.polyhedron), abs=0.01)
+    card.show_results(Results(), choices)
+    for panel in (card, bars):
+        panel.show_results(Results(best=step), choices)
+    table.show_results(Results(best=step))
+    assert card.figures[0].text() == f"{step.loss:#.4g}"
+    assert card.sentence.text() == "Best so far."
+    assert bars.plot.numbers()[1][1][2] == pytest.approx(100 * expected["sphericity"], rel=1e-5)
+    assert table.table.item(0, 2).text() != "–"
 
 
 def test_that_a_task_appears_after_a_moment_and_can_be_stopped(shown, wait):

@@ -1,5 +1,6 @@
 """Panels beside the views: the harmonic fit, the loss, and the result in one sentence."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
@@ -7,13 +8,14 @@ from typing import Any
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QGridLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.reasons import kept_sentence
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.messages import N_
-from regolith_studio.session.assessment import PolyhedronAssessment, assess_polyhedron
+from regolith_studio.session.assessment import PolyhedronAssessment, assess_polyhedron, assess_step
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.results import Results
@@ -324,7 +326,9 @@ class AssessmentPanel(ResultView):
                 done, choices.weights, results.against_particle, results.fewer_facets
             )
         elif results.best is None or choices.selected != self._particle:
-            self._shown = None
+            self._particle, self._shown = choices.selected, None
+        elif isinstance(results.best, CoarseningProgress):
+            self._shown = assess_step(results.best, choices.weights) or self._shown
         found = self._shown
         if found is None:
             why = translate(results.failures.get("coarsening", ""))
@@ -332,7 +336,10 @@ class AssessmentPanel(ResultView):
             note = why or tr("The polyhedron is not finished yet.")
             self.show_record(ResultRecord(state=state, note=note))
             return
-        error = "–" if found.rmsre != found.rmsre else number_text(found.rmsre, ".2%")
-        figures = (number_text(found.loss, "#.4g"), error, number_text(found.jaccard_distance, ".1%"))
+        shares = ((found.rmsre, ".2%"), (found.jaccard_distance, ".1%"))
+        figures = (
+            number_text(found.loss, "#.4g"),
+            *("–" if math.isnan(share) else number_text(share, form) for share, form in shares),
+        )
         state = ResultState.NONE if done is None else ResultState.CURRENT
         self.show_record(ResultRecord(figures, state=state, note=translate(found.sentence)))

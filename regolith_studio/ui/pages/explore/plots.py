@@ -79,8 +79,7 @@ class DescriptorTablePanel(QWidget):
 
     def show_results(self, results: Results) -> None:
         """Fill the table from these results."""
-        done = results.coarsened
-        achieved = done.achieved if done else None
+        achieved = results.best.achieved if results.best and results.best.achieved else None
         self._values = (results.particle_descriptors, results.fit_descriptors, achieved)
         self._fill()
 
@@ -154,8 +153,9 @@ class ErrorBarsPanel(QWidget):
         done = results.coarsened
         if "coarsening" in results.failures:
             self._polyhedron, self._bounds, self._against_particle = {}, {}, {}
+        if results.best is not None and results.best.errors:  # of a step too, while a weight is moved
+            self._polyhedron = {**results.best.errors, JACCARD: results.best.jaccard_distance}
         if done is not None:
-            self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
             self._bounds = bounds_in_force(done.bounds, done.errors)
         if found := results.against_particle:
             self._against_particle = {**found.errors, JACCARD: found.jaccard_distance}
