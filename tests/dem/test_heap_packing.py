@@ -9,7 +9,6 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, ShapeKind, prepare
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing, within_particles
-from regolith_studio.dem.separation import separations
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.dem.verification.bodies import cuboid
 from tests.dem.packings import cone
@@ -73,14 +72,3 @@ def test_that_points_within_particles_have_the_share_of_their_volumes(boxes: Dat
     points = np.random.default_rng(0).uniform(-pitch / 2, 2.5 * pitch, (200_000, 3))
     share = (np.pi / 6 * prepared.diameters**3).sum() / (3 * pitch) ** 3
     assert within_particles(prepared, particles, points).mean() == pytest.approx(share, rel=0.02)
-
-
-def test_that_the_separation_of_facing_cubes_is_their_gap() -> None:
-    n = 10
-    prepared = PreparedCase(
-        ReposeCase(n_particles=n), (CUBE,), np.zeros(n, dtype=int), np.full(n, (6 / np.pi) ** (1 / 3)), 1.0
-    )
-    places = np.column_stack([np.cumsum(1.0 + 0.01 * np.arange(n)), np.zeros(n), np.zeros(n)])
-    heap = ParticleState(places, prepared.diameters, np.tile([1.0, 0, 0, 0], (n, 1)), prepared.class_index)
-    pairs = np.array([[0, 1], [4, 5]])
-    assert separations(prepared, heap, pairs) == pytest.approx([0.01, 0.05], abs=1e-9)

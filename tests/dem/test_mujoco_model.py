@@ -46,24 +46,6 @@ def test_that_mujoco_goes_on_with_the_friction_of_the_phase(boxes: Dataset) -> N
     assert (other.model.geom_friction == solver.model.geom_friction).all()
 
 
-def test_that_bodies_lie_where_their_shapes_are_drawn(boxes: Dataset) -> None:
-    """Position and quaternion of a body turn the dataset's own shape into what collides."""
-    prepared = prepare(boxes, ReposeCase(n_particles=60, seed=5))
-    model = build_model(prepared, MujocoSettings()).model
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    geom = int(np.flatnonzero(model.geom_contype == PARTICLE)[7])
-    mesh, body = model.geom_dataid[geom], model.geom_bodyid[geom]
-    first = model.mesh_vertadr[mesh]
-    corners = model.mesh_vert[first : first + model.mesh_vertnum[mesh]].astype(float)
-    shown = corners @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
-    scale = prepared.scales[7] / prepared.mean_diameter
-    own = prepared.shapes[prepared.class_index[7]] * scale
-    placed = own @ data.xmat[body].reshape(3, 3).T + data.xpos[body]
-    distance = np.linalg.norm(shown[:, None] - placed[None], axis=2).min(axis=1)
-    assert distance.max() < 1e-6
-
-
 def test_that_the_cylinder_is_round_and_as_wide_as_asked(boxes: Dataset) -> None:
     prepared = prepare(boxes, ReposeCase(n_particles=60))
     built = build_model(prepared, MujocoSettings())
