@@ -171,6 +171,7 @@ def wall_slip(before: ParticleState, after: ParticleState, speed: float, test: L
     """Part of the wall's speed by which grains that touch it in both moments lag behind it, by the median."""
     centre = np.array([0.0, test.diameter / 2])
     early, late = before.points[:, ::2] - centre, after.points[:, ::2] - centre
+    # a grain that touches the wall has its centre half a diameter inside; a quarter more is let pass
     reach = test.diameter / 2 - 0.75 * after.diameters
     near = (
         (np.linalg.norm(early, axis=1) > reach) & (np.linalg.norm(late, axis=1) > reach) & (early[:, 1] < 0)
@@ -191,6 +192,8 @@ def avalanches(angles: FloatArray) -> tuple[FloatArray, FloatArray]:
     :data:`NOISE_SWING` times the noise, which is known from second differences.
     """
     second = np.diff(angles, 2)
+    # 0.6745: median deviation of a normal distribution in its standard deviation; 6 = 1 + 4 + 1: variance
+    # of a second difference of independent values in theirs
     noise = float(np.median(np.abs(second)) / 0.6745 / np.sqrt(6.0)) if len(second) else 0.0
     swing = max(MIN_SWING, NOISE_SWING * noise)
     maxima: list[float] = []
@@ -221,6 +224,7 @@ def block_bootstrap(values: FloatArray) -> Interval:
         correlation = np.correlate(centred, centred, "full")[n - 1 :] / variance
         negative = np.flatnonzero(correlation <= 0.0)
         known = correlation[1 : negative[0] if len(negative) else n]
+        # later correlations are left out: beyond the first that is not positive they are noise
         length = int(np.clip(np.ceil(4.0 * (0.5 + known.sum())), 1, max(1, n // 4)))
     generator = np.random.default_rng(0)
     starts = generator.integers(0, n, (N_RESAMPLES, -(-n // length)))

@@ -94,6 +94,7 @@ def write_files(contents: Mapping[Path, bytes]) -> None:
     Raises FileError if one cannot be written.
     """
     with contextlib.ExitStack() as stack:
+        # contexts end in reverse order: the first file takes its place first
         for path, content in reversed(list(contents.items())):
             stream = stack.enter_context(staged_file(path))
             stream.write(content)
@@ -292,6 +293,7 @@ def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
     there = {name for name in _files_in(folder) if not name.startswith(f"{JOURNAL}/")}
     names = [line[66:] for line in os.fsdecode(_read_if_there(folder / listed)).splitlines()]
     earlier = there & {*names, listed}
+    # the folder of this process is not exchanged: it would then be the hidden one, which is removed
     if earlier == there and folder != Path.cwd():
         try:
             exchange(stage, folder)
@@ -299,6 +301,7 @@ def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
             if (stage / JOURNAL).is_dir():
                 (stage / JOURNAL).rename(folder / JOURNAL)
         return
+    # the list goes first: what an interruption leaves of earlier files is then refused, not taken for new ones
     (stage / listed).replace(folder / listed)
     fresh = _files_in(stage)
     for name in earlier - fresh - {listed}:

@@ -138,6 +138,7 @@ def _lock(handle: int) -> None:
 
 def _release(held: _Held) -> None:
     with contextlib.suppress(OSError):
+        # while it is still locked: after that it could be the lock of a next owner
         if os.name != "nt":  # there an open file cannot be removed
             held.file.unlink()
     with contextlib.suppress(OSError):

@@ -173,6 +173,7 @@ def _instances(document: _Document) -> list[tuple[dict[str, Any], NDArray[np.flo
 def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     """Transformation of a node: its matrix, or scale, then rotation (x, y, z, w), then translation."""
     if "matrix" in node:
+        # the sixteen numbers go column by column
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     x, y, z, w = np.array(node.get("rotation", (0, 0, 0, 1)), dtype=np.float64)
     turn = np.array(
@@ -205,6 +206,7 @@ def _placed(
         raise FileError(
             f"is not a valid glTF: a face points to vertex {faces.max()} of {len(points):,} (counted from 0)."
         )
+    # a mirroring node turns faces inside out
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
     with np.errstate(all="ignore"):
@@ -217,6 +219,7 @@ def _faces(order: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
     if mode == _FAN:
         return np.column_stack([np.full(max(len(order) - 2, 0), order[:1].sum()), order[1:-1], order[2:]])
     faces = np.column_stack([order[:-2], order[1:-1], order[2:]])
+    # every second triangle of a strip runs the other way round
     faces[1::2] = faces[1::2, ::-1]
     return faces
 
