@@ -301,7 +301,7 @@ def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
             if (stage / JOURNAL).is_dir():
                 (stage / JOURNAL).rename(folder / JOURNAL)
         return
-    # the list goes first: what an interruption leaves of earlier files is then refused, not taken for new ones
+    # the list goes first: files that an interruption leaves of the earlier ones are then refused
     (stage / listed).replace(folder / listed)
     fresh = _files_in(stage)
     for name in earlier - fresh - {listed}:

@@ -134,7 +134,7 @@ def lmax_errors(
         if coarse is not None and fine is not None:
             values = dict(describe(fine, keys))
             for key, value in describe(coarse, [key for key in keys if key in EXTRAPOLATED]).items():
-                # half the edges leave a quarter of the error: the step between the levels is three times what remains
+                # half the edges leave a quarter of the error: a third of the step remains
                 values[key] += (values[key] - value) / 3
             errors[row] = [values[key] / wanted[key] - 1 for key in keys]
     return errors
