@@ -14,12 +14,12 @@ from PySide6.QtWidgets import (
     QMenu,
     QToolBar,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.messages import N_
 from regolith_studio.ui.keyboard import plain, shown_keys, with_keys
+from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.page import BREAK, PAGE_MENU, VIEW, ActionSpec, Page
 from regolith_studio.ui.theme import Theme, icon
 from regolith_studio.ui.translation import tr
@@ -60,16 +60,11 @@ class CommandPalette(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(560, 420)
         self._commands = tuple(commands)
-        self.line = QLineEdit()
-        self.line.setObjectName("command_line")
-        self.line.setAccessibleName(tr("Command"))
+        self.line = named(QLineEdit(), "command_line", tr("Command"))
         self.line.setPlaceholderText(tr("Type a command"))
-        self.list = QListWidget()
-        self.list.setAccessibleName(tr("Commands that fit"))
+        self.list = named(QListWidget(), spoken=tr("Commands that fit"))
         self.list.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        layout = QVBoxLayout(self)
-        layout.addWidget(self.line)
-        layout.addWidget(self.list)
+        vbox(self.line, self.list, parent=self, margins=None)
         self.line.textChanged.connect(self._fill)
         self.line.returnPressed.connect(self._run)
         self.list.itemActivated.connect(lambda _item: self._run())
@@ -261,8 +256,7 @@ class Actions:
         self._icons: list[tuple[QAction, str]] = []
         self._of_page: dict[str, list[QAction]] = {key: [] for key in pages}
         self.by_name: dict[str, QAction] = {}
-        self.bar = QToolBar(tr("Tools"))
-        self.bar.setObjectName("tool_bar")
+        self.bar = named(QToolBar(tr("Tools")), "tool_bar")
         self.bar.setMovable(False)
         window.addToolBar(self.bar)
         for title in MENUS:

@@ -9,7 +9,6 @@ from PySide6.QtWidgets import (
     QDockWidget,
     QFrame,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QMainWindow,
     QPlainTextEdit,
@@ -17,7 +16,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QScrollArea,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -25,7 +23,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.layout import STRETCH, hbox, named, tabs, vbox
 from regolith_studio.ui.result_card import TaskClock, progress_text
 from regolith_studio.ui.theme import Theme, current_theme, icon
 from regolith_studio.ui.translation import tr, translate
@@ -47,23 +45,14 @@ class TasksPanel(QWidget):
         self.setObjectName("tasks")
         self._tasks: tuple[Task, ...] = ()
         self._since: dict[int, float] = {}
-        self.text = ElidedLabel(tr(IDLE))
-        self.text.setObjectName("tasks_text")
-        self.bar = QProgressBar()
-        self.bar.setAccessibleName(tr("Progress"))
+        self.text = named(ElidedLabel(tr(IDLE)), "tasks_text")
+        self.bar = named(QProgressBar(), spoken=tr("Progress"))
         self.bar.setFixedWidth(150)
         self.bar.setFixedHeight(12)
         self.bar.setTextVisible(False)
-        self.stop = QToolButton()
-        self.stop.setObjectName("tasks_stop")
-        self.stop.setAccessibleName(tr("Stop"))
-        self.stop.setToolTip(tr("Stop the running task"))
+        self.stop = named(QToolButton(), "tasks_stop", tr("Stop"), tip=tr("Stop the running task"))
         self.stop.setAutoRaise(True)
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(6, 1, 6, 1)
-        layout.addWidget(self.bar)
-        layout.addWidget(self.stop)
-        layout.addWidget(self.text, 1)
+        hbox(self.bar, self.stop, (self.text, 1), parent=self, margins=(6, 1, 6, 1))
         self._make_room()
         self._timer = QTimer(self, interval=SHOW_DELAY, singleShot=True)
         self._timer.timeout.connect(self._show)
@@ -165,10 +154,7 @@ class TaskListPanel(QWidget):
         self._grid.setColumnStretch(0, 2)
         self._grid.setColumnStretch(1, 1)
         inside = QWidget()
-        column = QVBoxLayout(inside)
-        column.addWidget(self.idle)
-        column.addLayout(self._grid)
-        column.addStretch(1)
+        vbox(self.idle, self._grid, STRETCH, parent=inside, margins=None)
         area = QScrollArea()
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -176,9 +162,7 @@ class TaskListPanel(QWidget):
         area.setWidget(inside)
         for part in (area.viewport(), inside):
             part.setAutoFillBackground(False)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(area)
+        vbox(area, parent=self)
 
     def show_tasks(self, tasks: Sequence[Task]) -> None:
         """List other tasks."""
@@ -215,19 +199,12 @@ class LogPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("log")
-        self.text = QPlainTextEdit()
+        self.text = named(QPlainTextEdit(), spoken=tr("Log"))
         self.text.setReadOnly(True)
         self.text.setMaximumBlockCount(LIMIT)
-        self.text.setAccessibleName(tr("Log"))
-        self.copy = QPushButton(tr("Copy report"))
-        self.copy.setObjectName("copy_log")
+        self.copy = named(QPushButton(tr("Copy report")), "copy_log")
         self.copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
-        row = QHBoxLayout()
-        row.addStretch(1)
-        row.addWidget(self.copy)
-        layout = QVBoxLayout(self)
-        layout.addWidget(self.text, 1)
-        layout.addLayout(row)
+        vbox((self.text, 1), hbox(STRETCH, self.copy), parent=self, margins=None)
 
     def add(self, kind: str, sentence: str, details: str = "") -> None:
         """Add a message of the kind ``note`` or ``problem``."""

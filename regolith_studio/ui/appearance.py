@@ -14,14 +14,13 @@ from PySide6.QtWidgets import (
     QSpinBox,
     QSplitter,
     QToolBar,
-    QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.layout import STANDARD_SIZES, GrowingDialog
+from regolith_studio.ui.layout import STANDARD_SIZES, GrowingDialog, named, vbox
 from regolith_studio.ui.theme import (
     LARGEST,
     SMALLEST,
@@ -134,9 +133,7 @@ class PreferencesDialog(GrowingDialog):
         self.setMinimumWidth(420)
         self.language = ChoiceBox("preferences_language", tr("Language"), LANGUAGES)
         self.theme = ChoiceBox("preferences_theme", tr("Theme"), THEMES)
-        self.font_size = QSpinBox()
-        self.font_size.setObjectName("preferences_letters")
-        self.font_size.setAccessibleName(tr("Font size"))
+        self.font_size = named(QSpinBox(), "preferences_letters", tr("Font size"))
         self.font_size.setRange(int(SMALLEST), int(LARGEST))
         self.font_size.setSingleStep(10)
         self.font_size.setSuffix(" %")
@@ -177,9 +174,7 @@ class PreferencesDialog(GrowingDialog):
         form.addRow(tr("Font size"), self.font_size)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         buttons.rejected.connect(self.reject)
-        layout = QVBoxLayout(self)
-        layout.addLayout(form)
-        layout.addWidget(buttons)
+        vbox(form, buttons, parent=self, margins=None)
         self.note.hide()
 
 

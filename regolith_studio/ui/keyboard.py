@@ -15,7 +15,6 @@ from PySide6.QtWidgets import (
     QDialogButtonBox,
     QDoubleSpinBox,
     QFormLayout,
-    QHBoxLayout,
     QHeaderView,
     QKeySequenceEdit,
     QLabel,
@@ -27,13 +26,13 @@ from PySide6.QtWidgets import (
     QTableView,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, hint_label
 
@@ -302,14 +301,10 @@ class ShortcutsDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(620, 640)
         self._shortcuts, self._titles = shortcuts, titles
-        self.search = QLineEdit()
-        self.search.setObjectName("shortcuts_search")
-        self.search.setAccessibleName(tr("Search commands"))
+        self.search = named(QLineEdit(), "shortcuts_search", tr("Search commands"))
         self.search.setPlaceholderText(tr("Search commands and keys"))
         self.search.setClearButtonEnabled(True)
-        self.table = QTableWidget(0, 2)
-        self.table.setObjectName("shortcuts_table")
-        self.table.setAccessibleName(tr("Commands and their keys"))
+        self.table = named(QTableWidget(0, 2), "shortcuts_table", tr("Commands and their keys"))
         self.table.setHorizontalHeaderLabels([tr("Command"), tr("Keys")])
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
@@ -319,9 +314,7 @@ class ShortcutsDialog(QDialog):
         self.table.verticalHeader().hide()
         self.table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         self.table.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        self.editor = QKeySequenceEdit()
-        self.editor.setObjectName("shortcuts_keys")
-        self.editor.setAccessibleName(tr("New keys of the chosen command"))
+        self.editor = named(QKeySequenceEdit(), "shortcuts_keys", tr("New keys of the chosen command"))
         self.editor.setMaximumSequenceLength(1)
         self.editor.setClearButtonEnabled(True)
         self.change, self.default, self.all_defaults = (
@@ -395,11 +388,6 @@ class ShortcutsDialog(QDialog):
         self._fill()
 
     def _arrange(self) -> None:
-        row = QHBoxLayout()
-        row.addWidget(QLabel(tr("Keys:")))
-        row.addWidget(self.editor, 1)
-        for button in (self.change, self.default, self.all_defaults):
-            row.addWidget(button)
         mouse = QFormLayout()
         mouse.setHorizontalSpacing(24)
         for gesture, meaning in MOUSE:
@@ -407,11 +395,14 @@ class ShortcutsDialog(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         buttons.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)  # Enter searches
         buttons.rejected.connect(self.reject)
-        layout = QVBoxLayout(self)
-        layout.addWidget(self.search)
-        layout.addWidget(self.table, 1)
-        layout.addLayout(row)
-        layout.addWidget(self.sentence)
-        layout.addWidget(heading(tr("Mouse in the views")))
-        layout.addLayout(mouse)
-        layout.addWidget(buttons)
+        vbox(
+            self.search,
+            (self.table, 1),
+            hbox(QLabel(tr("Keys:")), (self.editor, 1), self.change, self.default, self.all_defaults),
+            self.sentence,
+            heading(tr("Mouse in the views")),
+            mouse,
+            buttons,
+            parent=self,
+            margins=None,
+        )

@@ -1,12 +1,15 @@
-"""Splitters, scroll areas, tabs, sections that fold, and rows of controls."""
+"""Names of widgets, boxes, splitters, scroll areas, tabs, and sections that fold."""
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtWidgets import (
+    QBoxLayout,
     QComboBox,
     QDialog,
     QHBoxLayout,
+    QLayout,
     QScrollArea,
     QSizePolicy,
     QSplitter,
@@ -15,6 +18,70 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
     QWidget,
 )
+
+Part = QWidget | QLayout | int | None
+STRETCH = None
+"""Among the parts of a box: room that is left."""
+W = TypeVar("W", bound=QWidget)
+
+
+def named(widget: W, name: str = "", spoken: str = "", tip: str = "", role: str = "") -> W:
+    """A widget with its object name, accessible name, tool tip, and role in the style sheet."""
+    if name:
+        widget.setObjectName(name)
+    if spoken:
+        widget.setAccessibleName(spoken)
+    if tip:
+        widget.setToolTip(tip)
+    if role:
+        widget.setProperty("role", role)
+    return widget
+
+
+Margins = tuple[int, int, int, int] | None
+"""At the left, top, right and bottom in pixels; those of the style for none."""
+
+
+def vbox(
+    *parts: Part | tuple[Part, int],
+    parent: QWidget | None = None,
+    margins: Margins = (0, 0, 0, 0),
+    spacing: int = -1,
+) -> QVBoxLayout:
+    """Parts below each other: widgets and layouts, also with their stretch, pixels, or :data:`STRETCH`."""
+    return _filled(QVBoxLayout(parent) if parent else QVBoxLayout(), parts, margins, spacing)
+
+
+def hbox(
+    *parts: Part | tuple[Part, int],
+    parent: QWidget | None = None,
+    margins: Margins = (0, 0, 0, 0),
+    spacing: int = -1,
+) -> QHBoxLayout:
+    """Parts beside each other, as :func:`vbox`."""
+    return _filled(QHBoxLayout(parent) if parent else QHBoxLayout(), parts, margins, spacing)
+
+
+Box = TypeVar("Box", bound=QBoxLayout)
+
+
+def _filled(box: Box, parts: Sequence[Part | tuple[Part, int]], margins: Margins, spacing: int) -> Box:
+    if margins is not None:
+        box.setContentsMargins(*margins)
+    if spacing >= 0:
+        box.setSpacing(spacing)
+    for each in parts:
+        part, stretch = each if isinstance(each, tuple) else (each, 0)
+        match part:
+            case QWidget():
+                box.addWidget(part, stretch)
+            case QLayout():
+                box.addLayout(part, stretch)
+            case int():
+                box.addSpacing(part)
+            case None:
+                box.addStretch(1)
+    return box
 
 
 class Collapsible(QWidget):

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QAbstractItemView,
     QButtonGroup,
     QFrame,
-    QHBoxLayout,
     QScrollArea,
     QSizePolicy,
     QStackedWidget,
@@ -30,7 +29,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.keyboard import with_keys
-from regolith_studio.ui.layout import scrolled
+from regolith_studio.ui.layout import hbox, scrolled
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, icon, pass_theme, restyle
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
@@ -408,8 +407,4 @@ class PageStack(QWidget):
             self.widgets[self._current].on_hide()
 
     def _arrange(self) -> None:
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(self.sidebar)
-        row.addWidget(self._stack, 1)
+        hbox(self.sidebar, (self._stack, 1), parent=self, spacing=0)

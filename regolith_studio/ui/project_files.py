@@ -19,6 +19,7 @@ from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.commands import PageHistory, without
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.page import PageStack
 from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.toast import Toast
@@ -41,8 +42,7 @@ def may_close(
     if not reasons and not unsaved:
         return True
     title, lost = tr("Close Regolith Studio?"), "\n".join(map(inert, (*reasons, *unsaved)))
-    box = QMessageBox(QMessageBox.Icon.Question, title, lost, parent=parent)
-    box.setObjectName("closing")
+    box = named(QMessageBox(QMessageBox.Icon.Question, title, lost, parent=parent), "closing")
     stay = box.addButton(tr("Cancel"), QMessageBox.ButtonRole.RejectRole)
     words = tr("Stop and close") if reasons else tr("Don't save")
     leave = box.addButton(words, QMessageBox.ButtonRole.DestructiveRole)

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLab
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.labels import FixedHeightText, hint_label
@@ -138,8 +139,7 @@ class ResultView(QFrame):
         self.captions = tuple(hint_label(caption) for caption in captions)
         self.sentence = hint_label()
         self.sentence.setObjectName(f"{name}_sentence")
-        self.button = QPushButton(start, self)
-        self.button.setObjectName(f"{name}_button")
+        self.button = named(QPushButton(start, self), f"{name}_button")
         self.button.clicked.connect(self._act)
         self._ends: list[QWidget] = []
         self._place(lines)

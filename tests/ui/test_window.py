@@ -285,7 +285,7 @@ def test_that_the_window_follows_dark_and_light(window, wait):
 @pytest.mark.slow
 def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, shown, preferences, wait):
     busy = []
-    monkeypatch.setattr("regolith_studio.ui.main_window.IDLE", 20)
+    monkeypatch.setattr("regolith_studio.ui.startup.IDLE", 20)
     monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: busy.append(len(window.session.tasks)))
     window = open_window(views="image", preferences=preferences)
     shown(window)
@@ -304,7 +304,7 @@ def work_without_end():
 
 @pytest.mark.slow
 def test_that_closed_particles_are_released_although_work_never_ends(monkeypatch, shown, preferences, wait):
-    monkeypatch.setattr("regolith_studio.ui.main_window.BUSY", 500)
+    monkeypatch.setattr("regolith_studio.ui.startup.BUSY", 500)
     released = []
     monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: released.append(True))
     window = open_window(views="image", preferences=preferences)

@@ -15,13 +15,11 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QFormLayout,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QLineEdit,
     QProgressBar,
     QPushButton,
     QSpinBox,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -34,7 +32,7 @@ from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.layout import GrowingDialog
+from regolith_studio.ui.layout import STRETCH, GrowingDialog, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, tr, tr_count
 from regolith_studio.ui.widgets.labels import hint_label
 
@@ -53,14 +51,9 @@ class PathField(QWidget):
     def __init__(self, name: str, title: str, *, folder: bool, filter: str = "") -> None:
         super().__init__()
         self._title, self._folder, self._filter = title, folder, filter
-        self.text = QLineEdit()
-        self.text.setObjectName(name)
-        self.text.setAccessibleName(title)
+        self.text = named(QLineEdit(), name, title)
         self.browse = QPushButton(tr("Browse …"))
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.text, 1)
-        layout.addWidget(self.browse)
+        hbox((self.text, 1), self.browse, parent=self)
         self.browse.clicked.connect(self._ask)
         self.text.textChanged.connect(self.changed)
 
@@ -90,9 +83,7 @@ class SourceField(QWidget):
     def __init__(self, count: int, unsaved: int) -> None:
         super().__init__()
         self._count = count - unsaved
-        self.kind = QComboBox()
-        self.kind.setObjectName("batch_source")
-        self.kind.setAccessibleName(tr("Recipe"))
+        self.kind = named(QComboBox(), "batch_source", tr("Recipe"))
         ours = tr("The files of the {count} open particles, as chosen now", count=self._count)
         self.kind.addItem(ours, "open")
         self.kind.addItem(tr("A recipe file"), "file")
@@ -102,10 +93,7 @@ class SourceField(QWidget):
             "{count} of the open particles come from no file and cannot be part of a batch.", count=unsaved
         )
         self.missing = hint_label(left_out, "warning")
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.kind, self.file, self.missing):
-            layout.addWidget(widget)
+        vbox(self.kind, self.file, self.missing, parent=self)
         self.kind.currentIndexChanged.connect(self._changed)
         self.file.changed.connect(self._changed)
         self.kind.setCurrentIndex(0 if self._count else 1)
@@ -139,19 +127,13 @@ class WorkersField(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.executor = QComboBox()
-        self.executor.setObjectName("batch_place")
-        self.executor.setAccessibleName(tr("Run on"))
+        self.executor = named(QComboBox(), "batch_place", tr("Run on"))
         for key, label in PLACES.items():
             self.executor.addItem(tr(label), key)
-        self.count = QSpinBox()
-        self.count.setObjectName("batch_workers")
-        self.count.setAccessibleName(tr("Number of processes"))
+        self.count = named(QSpinBox(), "batch_workers", tr("Number of processes"))
         self.count.setRange(1, 1024)
         self.count.setValue(cores())
-        self.address = QLineEdit()
-        self.address.setObjectName("batch_address")
-        self.address.setAccessibleName(tr("Address of the scheduler"))
+        self.address = named(QLineEdit(), "batch_address", tr("Address of the scheduler"))
         self.address.setPlaceholderText(tr("tcp://HOST:8786 or tls://HOST:8786"))
         names = ", ".join(TLS_NAMES)
         self.tls = PathField("batch_tls", tr("Folder with {names}", names=names), folder=True)
@@ -229,8 +211,7 @@ class RunDialog(GrowingDialog):
         self.folder.changed.connect(self.evaluate)
         self.state = hint_label()
         self.state.setObjectName(f"{name}_state")
-        self.bar = QProgressBar()
-        self.bar.setAccessibleName(tr("Progress"))
+        self.bar = named(QProgressBar(), spoken=tr("Progress"))
         self.box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         role = QDialogButtonBox.ButtonRole.ActionRole
         self.go = self.box.addButton(tr("Run"), role)
@@ -277,13 +258,7 @@ class RunDialog(GrowingDialog):
         """Place the form, what stands below it, and the progress; `fields` are disabled while it runs."""
         self._fields = fields
         form.setVerticalSpacing(7)
-        layout = QVBoxLayout(self)
-        layout.addLayout(form)
-        for widget in below:
-            layout.addWidget(widget)
-        layout.addStretch(1)
-        for widget in (self.state, self.bar, self.box):
-            layout.addWidget(widget)
+        vbox(form, *below, STRETCH, self.state, self.bar, self.box, parent=self, margins=None)
         for hidden in (self.bar, self.halt, self.results_button):
             hidden.hide()
 
@@ -366,12 +341,10 @@ class BatchDialog(RunDialog):
         for key, box in self.results.items():
             box.setObjectName(f"batch_{key}")
             box.setChecked(getattr(Outputs(), key))
-        self.resume = QCheckBox(tr("Resume the unfinished run"))
-        self.resume.setObjectName("batch_resume")
+        self.resume = named(QCheckBox(tr("Resume the unfinished run")), "batch_resume")
         self.resume.setChecked(True)
         self.workers = WorkersField()
-        self.dashboard = QLabel()
-        self.dashboard.setObjectName("batch_dashboard")
+        self.dashboard = named(QLabel(), "batch_dashboard")
         self.dashboard.setOpenExternalLinks(True)
         self.dashboard.setTextInteractionFlags(Qt.TextInteractionFlag.TextBrowserInteraction)
         self.dashboard.hide()

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QLabel,
     QLineEdit,
     QMessageBox,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -22,7 +21,7 @@ from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.particles import has_tables
 from regolith_studio.readers.settings import UNITS, unit_factor
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import GrowingDialog
+from regolith_studio.ui.layout import GrowingDialog, named, vbox
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label, short_number
@@ -40,8 +39,7 @@ def ask_add_or_replace(preferences: Preferences, count: int, parent: QWidget) ->
     kept = preferences.window.get(SETTING)
     if kept in (ADD, REPLACE):
         return str(kept)
-    box = QMessageBox(parent)
-    box.setObjectName("add_or_replace")
+    box = named(QMessageBox(parent), "add_or_replace")
     box.setWindowTitle(tr("Open particles"))
     box.setText(tr_count(N_("1 particle is open."), N_("{count} particles are open."), count))
     box.setInformativeText(tr("Add the new ones to them, or replace them? Undo restores replaced ones."))
@@ -51,8 +49,7 @@ def ask_add_or_replace(preferences: Preferences, count: int, parent: QWidget) ->
     for button, name in ((add, "opening_add"), (replace, "opening_replace"), (cancel, "opening_cancel")):
         button.setObjectName(name)
     box.setDefaultButton(add)
-    remember = QCheckBox(tr("Do not ask again"))
-    remember.setObjectName("opening_remember")
+    remember = named(QCheckBox(tr("Do not ask again")), "opening_remember")
     box.setCheckBox(remember)
     box.exec()
     pressed = box.clickedButton()
@@ -111,14 +108,10 @@ class UnitDialog(GrowingDialog):
             )
         )
         question.setWordWrap(True)
-        self.unit = QComboBox()
-        self.unit.setObjectName("unit")
-        self.unit.setAccessibleName(tr("Length unit"))
+        self.unit = named(QComboBox(), "unit", tr("Length unit"))
         for key in UNITS:
             self.unit.addItem(tr(LABELS.get(key, key)), key)
-        self.voxel = DecimalField()
-        self.voxel.setObjectName("voxel_size")
-        self.voxel.setAccessibleName(tr("Edge of a voxel in micrometres"))
+        self.voxel = named(DecimalField(), "voxel_size", tr("Edge of a voxel in micrometres"))
         self.voxel.setRange(0.001, 10_000.0)
         self.voxel.setDecimals(3)
         self.voxel.setSuffix(" µm")
@@ -127,9 +120,7 @@ class UnitDialog(GrowingDialog):
         form = QFormLayout()
         form.addRow(tr("Unit"), self.unit)
         form.addRow(self._voxel_label, self.voxel)
-        self.convention = QComboBox(self)
-        self.convention.setObjectName("convention")
-        self.convention.setAccessibleName(tr("Convention of coefficients"))
+        self.convention = named(QComboBox(self), "convention", tr("Convention of coefficients"))
         for convention, label in CONVENTIONS:
             self.convention.addItem(tr(label), convention)
         if has_tables(paths):
@@ -145,14 +136,15 @@ class UnitDialog(GrowingDialog):
         self._open = buttons.button(QDialogButtonBox.StandardButton.Open)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
-        layout = QVBoxLayout(self)
-        layout.addWidget(question)
-        layout.addLayout(form)
-        layout.addWidget(self.size_note)
-        layout.addWidget(
-            hint_label(tr("Only 3MF and glTF state their unit. The answer is kept for the folder."))
+        vbox(
+            question,
+            form,
+            self.size_note,
+            hint_label(tr("Only 3MF and glTF state their unit. The answer is kept for the folder.")),
+            buttons,
+            parent=self,
+            margins=None,
         )
-        layout.addWidget(buttons)
         self.unit.currentIndexChanged.connect(self._show_voxel)
         self.unit.currentIndexChanged.connect(self._show_size)
         self.unit.activated.connect(self._take_unit)

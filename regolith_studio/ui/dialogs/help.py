@@ -33,6 +33,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.guide import chapter
 from regolith_studio.resources import guide_folder, resource
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.layout import STRETCH, hbox, named, vbox
 from regolith_studio.ui.theme import current_theme, pixmap
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import CITATION, heading, hint_label, with_subscripts
@@ -93,8 +94,7 @@ def as_markdown(text: str) -> str:
 
 def guide_dialog(parent: QWidget, page: str = "") -> QDialog:
     """The guide at the chapter of a page, or at its contents."""
-    dialog = QDialog(parent)
-    dialog.setObjectName("guide_dialog")
+    dialog = named(QDialog(parent), "guide_dialog")
     dialog.setWindowTitle(tr("Guide"))
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.resize(860, 680)
@@ -104,14 +104,7 @@ def guide_dialog(parent: QWidget, page: str = "") -> QDialog:
     back.clicked.connect(text.backward)
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
     buttons.rejected.connect(dialog.reject)
-    row = QHBoxLayout()
-    row.addWidget(contents)
-    row.addWidget(back)
-    row.addStretch(1)
-    row.addWidget(buttons)
-    layout = QVBoxLayout(dialog)
-    layout.addWidget(text, 1)
-    layout.addLayout(row)
+    vbox((text, 1), hbox(contents, back, STRETCH, buttons), parent=dialog, margins=None)
     text.show_chapter(PAGES.get(page, CONTENTS))
     return dialog
 
@@ -129,8 +122,7 @@ COPYLEFT = ("PySide6-Essentials", "connected-components-3d")
 
 def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     """Version, purpose, the libraries that matter when something looks wrong, and licences."""
-    dialog = QDialog(parent)
-    dialog.setObjectName("about_dialog")
+    dialog = named(QDialog(parent), "about_dialog")
     dialog.setWindowTitle(tr("About Regolith Studio"))
     mark = QLabel()
     mark.setPixmap(pixmap("app", "#000000", 72))
@@ -147,10 +139,7 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     source.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
     text.addWidget(source)
     text.addWidget(hint_label(_licences()))
-    row = QHBoxLayout()
-    row.setSpacing(16)
-    row.addWidget(mark)
-    row.addLayout(text, 1)
+    row = hbox(mark, (text, 1), spacing=16)
     return _closed(dialog, row)
 
 
@@ -203,9 +192,7 @@ def licence_of(name: str) -> str:
 def _closed(dialog: QDialog, content: QHBoxLayout) -> QDialog:
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
     buttons.rejected.connect(dialog.reject)
-    layout = QVBoxLayout(dialog)
-    layout.addLayout(content)
-    layout.addWidget(buttons)
+    vbox(content, buttons, parent=dialog, margins=None)
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     return dialog
 
@@ -259,9 +246,7 @@ class Tour(QWidget):
         self._elsewhere = False
         self._spot = QRect()
         self._watched: QWidget | None = None
-        self._bubble = QFrame(window)
-        self._bubble.setObjectName("tour_bubble")
-        self._bubble.setProperty("role", "toast")
+        self._bubble = named(QFrame(window), "tour_bubble", role="toast")
         self._bubble.setProperty("kind", "note")
         self._title, self._text, self._count = heading(""), QLabel(), hint_label()
         self._text.setWordWrap(True)
@@ -369,12 +354,7 @@ class Tour(QWidget):
         row.addWidget(self._count, 1)
         for button in (self.end, self.back, self.next):
             row.addWidget(button)
-        layout = QVBoxLayout(self._bubble)
-        layout.setContentsMargins(16, 14, 16, 12)
-        layout.setSpacing(8)
-        for widget in (self._title, self._text):
-            layout.addWidget(widget)
-        layout.addLayout(row)
+        vbox(self._title, self._text, row, parent=self._bubble, margins=(16, 14, 16, 12), spacing=8)
 
 
 def _beside(spot: QRect, bubble: QRect, room: QRect) -> QPoint:

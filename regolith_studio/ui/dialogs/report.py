@@ -17,6 +17,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import PAGE, SectionBegun
 from regolith_studio.ui.dialogs.batch import RunDialog
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import hint_label
@@ -54,13 +55,10 @@ class ReportDialog(RunDialog):
                 "seed": choices.seed,
             }
         )
-        self.workers = QSpinBox()
-        self.workers.setObjectName("report_workers")
-        self.workers.setAccessibleName(tr("Number of processes"))
+        self.workers = named(QSpinBox(), "report_workers", tr("Number of processes"))
         self.workers.setRange(1, 1024)
         self.workers.setValue(cores())
-        self.section = QLabel()
-        self.section.setObjectName("report_section")
+        self.section = named(QLabel(), "report_section")
         self.section.hide()
         self.form.valueChanged.connect(self.evaluate)
         self._place()

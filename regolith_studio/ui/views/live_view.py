@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QEvent, QMessageLogContext, QtMsgType, qInstallMessageHandler
 from PySide6.QtGui import QHideEvent, QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
 from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, ThemeColors
+from regolith_studio.ui.layout import vbox
 from regolith_studio.ui.views.view import CameraMouse, KeepFramed, Picture
 
 
@@ -87,9 +88,7 @@ class LiveView(QWidget):
         self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
         self._moved: list[Callable[[CameraPose], None]] = []
         self._refitting = KeepFramed(self)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self._canvas)
+        vbox(self._canvas, parent=self)
 
     @property
     def widget(self) -> QWidget:

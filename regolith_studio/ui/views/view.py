@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QWidget
 
 from regolith_studio.scene.cameras import (
     CameraPose,
@@ -23,6 +23,7 @@ from regolith_studio.scene.cameras import (
 )
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.ui.keyboard import FOCUSED
+from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fields import ChoiceBox
@@ -346,11 +347,9 @@ class ViewFrame(QFrame):
         self._detail = ""
         self._mark = QLabel()
         self._mark.hide()
-        self._title = QLabel()
+        self._title = named(QLabel(), f"title_{name}", role="heading")
         self._title.setTextFormat(Qt.TextFormat.RichText)
-        self._title.setProperty("role", "heading")
         self._title.setMinimumWidth(10)
-        self._title.setObjectName(f"title_{name}")
         self.detail = ElidedLabel(role="hint")
         self.partner = ChoiceBox(f"partner_{name}", tr(compare), partners or {})
         self.partner.setMinimumContentsLength(7)
@@ -406,21 +405,14 @@ class ViewFrame(QFrame):
             super().mouseDoubleClickEvent(event)
 
     def _arrange(self) -> None:
-        row = QHBoxLayout()
-        row.setContentsMargins(_PADDING, 6, _PADDING, 0)
-        row.setSpacing(5)
-        row.addWidget(self._mark)
-        row.addWidget(self._title, 1)
-        under = QHBoxLayout()
-        under.setContentsMargins(_PADDING, 0, _PADDING, 4)
-        under.addWidget(self.detail, 1)
-        under.addWidget(self.partner)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(1, 1, 1, 1)
-        layout.setSpacing(0)
-        layout.addLayout(row)
-        layout.addLayout(under)
-        layout.addWidget(self.view.widget, 1)
+        vbox(
+            hbox(self._mark, (self._title, 1), margins=(_PADDING, 6, _PADDING, 0), spacing=5),
+            hbox((self.detail, 1), self.partner, margins=(_PADDING, 0, _PADDING, 4)),
+            (self.view.widget, 1),
+            parent=self,
+            margins=(1, 1, 1, 1),
+            spacing=0,
+        )
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

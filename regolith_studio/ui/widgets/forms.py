@@ -96,8 +96,8 @@ class SettingsForm(QWidget):
             self.rows.addRow(editor)
         else:
             label = QLabel(rich_symbol(tr(str(each.metadata.get("symbol", words)))))
-            label.setBuddy(editor)
             label.setToolTip(editor.toolTip())
+            label.setBuddy(editor)
             self.rows.addRow(label, editor)
 
     def _announce(self, name: str, *_: object) -> None:

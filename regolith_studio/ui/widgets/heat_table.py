@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, localized, tr
 from regolith_studio.ui.widgets.table import FontRowHeight
@@ -145,8 +146,7 @@ def numbers_table(name: str) -> QTableWidget:
 
     ``name``: accessible name.
     """
-    table = QTableWidget()
-    table.setAccessibleName(name)
+    table = named(QTableWidget(), spoken=name)
     table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
     table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -211,8 +211,7 @@ def _lines_of_names(table: QTableWidget, width: int) -> int:
 
 def centred_hint(text: str) -> QLabel:
     """A centred placeholder text."""
-    label = QLabel(text)
-    label.setProperty("role", "hint")
+    label = named(QLabel(text), role="hint")
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)
     label.setWordWrap(True)
     return label

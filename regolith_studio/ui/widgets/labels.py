@@ -8,6 +8,7 @@ from PySide6.QtCore import QEvent, QLocale, QSize, Qt
 from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.translation import Markup, inert, localized, number_text, rich, tr
 
 _TAG = re.compile(r"(<[^<>]*>)")
@@ -83,15 +84,12 @@ class CitingLabel(QLabel):
 
 def heading(text: str) -> QLabel:
     """The heading of a group of controls."""
-    label = CitingLabel(text)
-    label.setProperty("role", "heading")
-    return label
+    return named(CitingLabel(text), role="heading")
 
 
 def hint_label(text: str = "", role: str = "hint") -> QLabel:
     """A wrapped text in a muted colour, or in that of a warning if `role` is ``warning``."""
-    label = CitingLabel(text)
-    label.setProperty("role", role)
+    label = named(CitingLabel(text), role=role)
     label.setWordWrap(True)
     return label
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QTo
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
-from regolith_studio.ui.layout import control_row
+from regolith_studio.ui.layout import control_row, named
 from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.fields import ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -55,13 +55,12 @@ class PresetBar(QWidget):
         self.box = ElidedComboBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
         self.box.setObjectName(name)
         self.box.setAccessibleName(accessible)
-        self.reset = QPushButton(tr("Reset"))
-        self.reset.setToolTip(tr("Back to the values of the preset"))
+        self.reset = named(QPushButton(tr("Reset")), tip=tr("Back to the values of the preset"))
         self.more = QToolButton()
-        self.more.setText("⋯")
         self.more.setObjectName(f"{name}_more")
         self.more.setAccessibleName(tr("Save or delete a preset"))
         self.more.setToolTip(tr("Save or delete a preset of your own"))
+        self.more.setText("⋯")
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more.setMenu(self._menu())
         self._make_room()
@@ -112,8 +111,7 @@ class PresetBar(QWidget):
 
     def ask_name(self) -> None:
         """Ask for a name and request to save the values under it."""
-        dialog = QInputDialog(self)
-        dialog.setObjectName("preset_name")
+        dialog = named(QInputDialog(self), "preset_name")
         dialog.setWindowTitle(tr("Save as own preset"))
         dialog.setLabelText(tr("Name of the preset:"))
         dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)

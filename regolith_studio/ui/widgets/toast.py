@@ -7,7 +7,6 @@ from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
     QFrame,
-    QHBoxLayout,
     QLabel,
     QPlainTextEdit,
     QPushButton,
@@ -17,6 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.readers.particles import FileProblem
+from regolith_studio.ui.layout import hbox, named
 from regolith_studio.ui.translation import inert, tr, translate
 
 NOTE_SECONDS = 6
@@ -38,24 +38,17 @@ class Toast(QFrame):
         self.setProperty("role", "toast")
         self.setAutoFillBackground(True)
         self._details = ""
-        self.sentence = QLabel()
-        self.sentence.setObjectName("toast_sentence")
+        self.sentence = named(QLabel(), "toast_sentence")
         self.sentence.setWordWrap(True)
         self.sentence.setMinimumWidth(300)
         self.sentence.setTextFormat(Qt.TextFormat.PlainText)
-        self.more = QPushButton(tr("Details …"))
-        self.more.setObjectName("toast_details")
+        self.more = named(QPushButton(tr("Details …")), "toast_details")
         self.more.clicked.connect(self._show_details)
-        dismiss = QToolButton()
+        dismiss = named(QToolButton(), spoken=tr("Close this message"))
         dismiss.setText("✕")
         dismiss.setAutoRaise(True)
-        dismiss.setAccessibleName(tr("Close this message"))
         dismiss.clicked.connect(self.hide)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(12, 8, 8, 8)
-        row.addWidget(self.sentence, 1)
-        row.addWidget(self.more)
-        row.addWidget(dismiss)
+        hbox((self.sentence, 1), self.more, dismiss, parent=self, margins=(12, 8, 8, 8))
         self._timer = QTimer(self, singleShot=True)
         self._timer.timeout.connect(self.hide)
         parent.installEventFilter(self)
@@ -118,9 +111,8 @@ def show_details(parent: QWidget, sentence: str, details: str) -> None:
     layout = QVBoxLayout(dialog)
     first = QLabel(inert(sentence))
     first.setWordWrap(True)
-    text = QPlainTextEdit(details)
+    text = named(QPlainTextEdit(details), spoken=tr("Details"))
     text.setReadOnly(True)
-    text.setAccessibleName(tr("Details"))
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
     copy = buttons.addButton(tr("Copy report"), QDialogButtonBox.ButtonRole.ActionRole)
     copy.clicked.connect(text.selectAll)

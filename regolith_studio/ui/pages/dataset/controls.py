@@ -11,7 +11,6 @@ from PySide6.QtGui import QDesktopServices, QIcon
 from PySide6.QtWidgets import (
     QComboBox,
     QFileDialog,
-    QHBoxLayout,
     QLineEdit,
     QPushButton,
     QScrollArea,
@@ -32,7 +31,7 @@ from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.settings import setting_of
-from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.layout import hbox, named, side_by_side, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.theme import Theme, current_theme
@@ -77,11 +76,9 @@ class RepresentativesPanel(QWidget):
         self.population = hint_label()
         self.start = QPushButton(tr("Find representatives"))
         self.count = NumberSlider(COUNT)
-        self.which = QComboBox()
+        self.which = named(QComboBox(), "dataset_which", tr("Particles of the dataset"))
         self.which.addItem(tr("Representatives"), True)
         self.which.addItem(tr("All open particles"), False)
-        self.which.setObjectName("dataset_which")
-        self.which.setAccessibleName(tr("Particles of the dataset"))
         self.weighting = QComboBox()
         for key, label in WEIGHTINGS.items():
             self.weighting.addItem(tr(label), key)
@@ -89,17 +86,15 @@ class RepresentativesPanel(QWidget):
         self.count.field.setObjectName("dataset_count")
         self.weighting.setObjectName("dataset_weighting")
         self.weighting.setAccessibleName(tr("Weighting of the representatives"))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (
+        vbox(
             heading(tr("1  Particles")),
             FixedHeightText((self.population,)),
             self.which,
             self.weighting,
             self.count,
             self.start,
-        ):
-            layout.addWidget(widget)
+            parent=self,
+        )
         self._wanted = 10
         self.count.setValue(self._wanted)
         self.count.valueChanged.connect(self._count_changed)
@@ -251,12 +246,9 @@ class FolderPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("dataset_folder")
-        self.name = QLineEdit("regolith")
-        self.name.setObjectName("dataset_name")
-        self.name.setAccessibleName(tr("Name of the dataset"))
+        self.name = named(QLineEdit("regolith"), "dataset_name", tr("Name of the dataset"))
         self.shapes, self.state = hint_label(), hint_label()
-        self.open = QPushButton(tr("Open a dataset …"))
-        self.open.setObjectName("dataset_open")
+        self.open = named(QPushButton(tr("Open a dataset …")), "dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         asked, there = (
@@ -459,27 +451,18 @@ class LibraryPanel(QWidget):
         self.facts.setContentsMargins(8, 4, 8, 4)
 
     def _arrange(self) -> None:
-        top = QHBoxLayout()
-        top.addWidget(self.choose)
-        top.addWidget(self.again)
-        top.addWidget(self.place, 1)
-        top.addWidget(self.words)
         area = QScrollArea()
         area.setWidgetResizable(True)
         area.setFrameShape(area.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         area.setWidget(self.facts)
-        buttons = QHBoxLayout()
-        buttons.addWidget(self.use)
-        buttons.addWidget(self.look)
         right = QWidget()
-        column = QVBoxLayout(right)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(area, 1)
-        column.addLayout(buttons)
+        vbox((area, 1), hbox(self.use, self.look), parent=right)
         parts = side_by_side((self.tree, right), (640, 320), stretch=0)
         parts.setObjectName("library_parts")
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(8, 6, 8, 6)
-        layout.addLayout(top)
-        layout.addWidget(parts, 1)
+        vbox(
+            hbox(self.choose, self.again, (self.place, 1), self.words),
+            (parts, 1),
+            parent=self,
+            margins=(8, 6, 8, 6),
+        )

@@ -27,7 +27,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
 from regolith_studio.settings import settings_in
-from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.layout import Collapsible, named, vbox
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -67,17 +67,12 @@ class ExportPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "export_contact", tr("Published contact parameters"))
         self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Published cylinder"))
         self.times = ParameterForm(ScriptTimes, "export")
-        self.lossy = QCheckBox(tr("Change shapes where a format needs it"))
-        self.lossy.setObjectName("dataset_lossy")
-        self.export = QPushButton(tr("Export …"))
-        self.export.setObjectName("dataset_export")
+        self.lossy = named(QCheckBox(tr("Change shapes where a format needs it")), "dataset_lossy")
+        self.export = named(QPushButton(tr("Export …")), "dataset_export")
         form = QFormLayout()
         form.addRow(tr("Coarse graining"), self.coarse_graining)
         form.addRow(tr("Particles drawn"), self.particles)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(4)
-        layout.addWidget(heading(tr("4  Export to")))
+        layout = vbox(heading(tr("4  Export to")), parent=self, spacing=4)
         for title, keys in groups().items():
             layout.addWidget(hint_label(tr(title)))
             for key in keys:
@@ -93,16 +88,10 @@ class ExportPanel(QWidget):
         """Belongs below the scrolled column: the button stays in sight however many formats there are."""
         self.preview = hint_label()
         self.preview.setObjectName("dataset_preview")
-        self.enlarge = QPushButton()
-        self.enlarge.setObjectName("dataset_enlarge")
+        self.enlarge = named(QPushButton(), "dataset_enlarge")
         self.enlarge.hide()
         self._fill: Callable[[ExportOptions], CylinderFilling] | None = None
-        last = QVBoxLayout(self.foot)
-        last.setContentsMargins(4, 6, 12, 10)
-        last.addWidget(self.preview)
-        last.addWidget(self.enlarge)
-        last.addWidget(self.lossy)
-        last.addWidget(self.export)
+        vbox(self.preview, self.enlarge, self.lossy, self.export, parent=self.foot, margins=(4, 6, 12, 10))
         self.coarse_graining.setValue(1)
         self.particles.setValue(200)
         for slider in (self.coarse_graining, self.particles):
@@ -217,8 +206,7 @@ class ExportPanel(QWidget):
 
     def _box(self, key: str) -> QCheckBox:
         exporter = EXPORTERS[key]
-        box = QCheckBox(tr(exporter.label))
-        box.setObjectName(f"dataset_to_{key}")
+        box = named(QCheckBox(tr(exporter.label)), f"dataset_to_{key}")
         lines = [
             tr("Contains: {what}", what="; ".join(map(tr, exporter.carries))),
             tr("Does not contain: {what}", what="; ".join(map(tr, exporter.loses))),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
 
 from regolith_studio.dataset.build import singleton_class
 from regolith_studio.dataset.dataset import Dataset
@@ -38,7 +38,17 @@ from regolith_studio.messages import N_
 from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.layout import equal_parts, scrolled, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import (
+    equal_parts,
+    hbox,
+    named,
+    scrolled,
+    scrolled_column,
+    side_by_side,
+    stacked,
+    tabs,
+    vbox,
+)
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import (
     DatasetControls,
@@ -93,8 +103,7 @@ class DatasetPage(PageWidget):
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), ExportPanel()
         self.result = ResultView("dataset_result", (tr("Representatives"), tr("Formats written")))
-        self.open_written = QPushButton(tr("Open the folder"))
-        self.open_written.setObjectName("dataset_open_written")
+        self.open_written = named(QPushButton(tr("Open the folder")), "dataset_open_written")
         self.open_written.setEnabled(False)
         self.result.add(self.open_written)
         self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
@@ -552,11 +561,12 @@ class DatasetPage(PageWidget):
 
     def _place(self) -> None:
         controls = QWidget()
-        steps = QVBoxLayout(controls)
-        steps.setContentsMargins(0, 0, 0, 0)
-        steps.setSpacing(0)
-        steps.addWidget(scrolled_column((self.representatives, self.sizes, self.folder, self.targets)), 1)
-        steps.addWidget(self.targets.foot)
+        vbox(
+            (scrolled_column((self.representatives, self.sizes, self.folder, self.targets)), 1),
+            self.targets.foot,
+            parent=controls,
+            spacing=0,
+        )
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (scrolled(self.exports), tr("Exported"))]
@@ -566,12 +576,7 @@ class DatasetPage(PageWidget):
         middle = stacked((upper, self._shapes, self._lower), (260, 330, 120), stretch=1)
         middle.setObjectName("dataset_middle")
         results = QWidget()
-        column = QVBoxLayout(results)
-        column.setContentsMargins(10, 10, 2, 8)
-        column.addWidget(self.result)
-        column.addWidget(middle, 1)
+        vbox(self.result, (middle, 1), parent=results, margins=(10, 10, 2, 8))
         whole = side_by_side((results, controls), (1200, 320), stretch=0)
         whole.setObjectName("dataset_whole")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(whole)
+        hbox(whole, parent=self)

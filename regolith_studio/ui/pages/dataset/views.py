@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QSize, Qt, QTimer
-from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.dataset.dataset import Dataset
@@ -16,6 +16,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representatives_jobs import ChosenParticles
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
+from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count
 from regolith_studio.ui.widgets.labels import heading
@@ -48,9 +49,7 @@ class RepresentativesGallery(QWidget):
         self._timer = QTimer(self, interval=0)
         self._timer.timeout.connect(self._draw_next)
         self.title = heading("")
-        self.list = QListWidget()
-        self.list.setObjectName("dataset_gallery")
-        self.list.setAccessibleName(tr("Representative particles"))
+        self.list = named(QListWidget(), "dataset_gallery", tr("Representative particles"))
         self.list.setViewMode(QListView.ViewMode.IconMode)
         self.list.setResizeMode(QListView.ResizeMode.Adjust)
         self.list.setMovement(QListView.Movement.Static)
@@ -62,11 +61,7 @@ class RepresentativesGallery(QWidget):
         self.empty.setProperty("role", "hint")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setWordWrap(True)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(8, 6, 8, 6)
-        layout.addWidget(self.title)
-        layout.addWidget(self.list, 1)
-        layout.addWidget(self.empty, 1)
+        vbox(self.title, (self.list, 1), (self.empty, 1), parent=self, margins=(8, 6, 8, 6))
         self.show_shapes("", ())
 
     @property

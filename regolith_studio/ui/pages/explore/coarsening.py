@@ -7,7 +7,6 @@ from PySide6.QtCore import QEvent, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFormLayout,
-    QHBoxLayout,
     QPushButton,
     QSpinBox,
     QToolButton,
@@ -17,7 +16,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.settings import CoarseningSettings
-from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.layout import Collapsible, hbox, named, vbox
 from regolith_studio.ui.theme import Theme, current_theme, icon
 from regolith_studio.ui.translation import inert, tr, translate
 from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider
@@ -47,8 +46,7 @@ class CoarseningPanel(QWidget):
         super().__init__()
         self.setObjectName("coarsening")
         self._sufficient = 0
-        self.enough = QPushButton()
-        self.enough.setObjectName("sufficient_facets")
+        self.enough = named(QPushButton(), "sufficient_facets")
         self.finding = hint_label()
         self.finding.hide()
         methods = {"method": {key: method.label for key, method in METHODS.items()}}
@@ -65,8 +63,8 @@ class CoarseningPanel(QWidget):
         }
         self.dice = QToolButton()
         self.dice.setObjectName("next_seed")
-        self.dice.setToolTip(tr("Next seed: the same method with other random numbers"))
         self.dice.setAccessibleName(tr("Next seed"))
+        self.dice.setToolTip(tr("Next seed: the same method with other random numbers"))
         self._forms: dict[str, SettingsForm] = {}
         inside = QWidget()
         self._settings = QVBoxLayout(inside)
@@ -158,20 +156,19 @@ class CoarseningPanel(QWidget):
 
     def _arrange(self) -> None:
         row = self._form.rows.getWidgetPosition(self.seed)[0]  # type: ignore[index]  # a pair, says Qt
-        seed = QHBoxLayout()
-        seed.addWidget(self.seed, 1)
-        seed.addWidget(self.dice)
+        seed = hbox((self.seed, 1), self.dice)
         self._form.rows.setLayout(row, QFormLayout.ItemRole.FieldRole, seed)
         for slider in self._amounts.values():  # the stopping criterion above is their label
             self._sizes.rows.labelForField(slider).hide()
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Coarsened polyhedron")))
-        layout.addWidget(self._form)
-        layout.addWidget(self._sizes)
-        layout.addWidget(self.enough)
-        layout.addWidget(FixedHeightText((self.finding, self.outcome), NOTES, LEAST_NOTES))
-        layout.addWidget(self.more)
+        vbox(
+            heading(tr("Coarsened polyhedron")),
+            self._form,
+            self._sizes,
+            self.enough,
+            FixedHeightText((self.finding, self.outcome), NOTES, LEAST_NOTES),
+            self.more,
+            parent=self,
+        )
 
     def _connect(self) -> None:
         for form in (self._form, self._sizes):

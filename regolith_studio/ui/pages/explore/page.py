@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
-from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMenu, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QMainWindow, QMenu, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.progress import CoarseningProgress
@@ -24,7 +24,7 @@ from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import GAIN, SWEEPS, sufficient_facets
-from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
+from regolith_studio.ui.layout import hbox, named, padded, scrolled_column, side_by_side, stacked, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
 from regolith_studio.ui.pages.explore.panels import AssessmentPanel, FitPanel, LossPanel
@@ -57,9 +57,9 @@ class ParticleListPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("particle_list")
-        self.table = ParticleTable(particle_columns(*COLUMNS))
-        self.table.setObjectName("particle_table")
-        self.table.setAccessibleName(tr("Particles"))
+        self.table = named(
+            ParticleTable(particle_columns(*COLUMNS)), "particle_table", spoken=tr("Particles")
+        )
         self.table.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.table.customContextMenuRequested.connect(self._show_menu)
         self.table.currentChosen.connect(self._choose)
@@ -67,11 +67,7 @@ class ParticleListPanel(QWidget):
         self.title = heading(tr("Particles"))
         self.title.setWordWrap(True)
         self.hint = hint_label(tr("Drop mesh files or folders anywhere in the window to open them."))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.title)
-        layout.addWidget(self.table, 1)
-        layout.addWidget(self.hint)
+        vbox(self.title, (self.table, 1), self.hint, parent=self)
 
     def value(self) -> dict[str, str]:
         """The id of the current particle."""
@@ -305,10 +301,7 @@ class ExplorePage(PageWidget):
     def _place(self) -> None:
         high_enough = max(PLOTS_HEIGHT, PLOTS_LINES * self.fontMetrics().height())
         below = QWidget()
-        column = QVBoxLayout(below)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.assessment)
-        column.addWidget(self.plots, 1)
+        vbox(self.assessment, (self.plots, 1), parent=below)
         middle = stacked([self.three_views, below], [480, max(400, high_enough)], stretch=0)
         middle.setStretchFactor(1, 1)  # views wider than high would leave their sides empty
         middle.setObjectName("explore_rows")
@@ -319,9 +312,7 @@ class ExplorePage(PageWidget):
         for part, share in enumerate((1, 4)):
             columns.setStretchFactor(part, share)
         columns.setObjectName("explore_columns")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(columns)
+        hbox(columns, parent=self)
 
     def _show_list(self, shown: bool) -> None:
         self._list.setVisible(shown)

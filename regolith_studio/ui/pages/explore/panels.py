@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QGridLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QSizePolicy, QToolButton, QWidget
 
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.reasons import kept_sentence
@@ -19,7 +19,7 @@ from regolith_studio.session.assessment import PolyhedronAssessment, assess_poly
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.results import Results
-from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.layout import Collapsible, named, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import inert, number_text, tr, translate
 from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec, align_labels
@@ -55,15 +55,13 @@ class FitPanel(QWidget):
         self.more.button.setObjectName("radius_settings")
         self.findings = hint_label()
         self.warnings = hint_label(role="warning")
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Spherical-harmonics fit")))
-        for widget in (
+        vbox(
+            heading(tr("Spherical-harmonics fit")),
             self._degree,
             self.more,
             FixedHeightText((self.warnings, self.findings), 5, NOTE_LINES),
-        ):
-            layout.addWidget(widget)
+            parent=self,
+        )
         self.set_findings(None)
         for form in (self._degree, self._ways):
             form.edited.connect(self.valueChanged)
@@ -125,16 +123,16 @@ def weight_spec(key: str) -> NumberSpec:
 def lock_of(key: str) -> QToolButton:
     """The button that keeps a descriptor exactly."""
     name = tr(CATALOGUE[key].label)
-    lock = QToolButton()
+    lock = named(
+        QToolButton(),
+        f"keep_{key}",
+        tr("Keep {name} exactly", name=name),
+        tip=tr("Keep {name} exactly. Without, an error costs its weight; only exact methods can.", name=name),
+    )
     lock.setText("=")
     lock.setCheckable(True)
     lock.setAutoRaise(True)
     lock.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)  # as high as its slider
-    lock.setObjectName(f"keep_{key}")
-    lock.setAccessibleName(tr("Keep {name} exactly", name=name))
-    lock.setToolTip(
-        tr("Keep {name} exactly. Without, an error costs its weight; only exact methods can.", name=name)
-    )
     return lock
 
 
@@ -251,11 +249,7 @@ class LossPanel(QWidget):
             if key in self.locks:
                 grid.addWidget(self.locks[key], row, 1)
         align_labels(self.sliders.values())
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.bar)
-        layout.addLayout(grid)
-        layout.addWidget(FixedHeightText((self.origin,)))
+        vbox(self.bar, grid, FixedHeightText((self.origin,)), parent=self)
 
     def _connect(self) -> None:
         self.bar.chosen.connect(self._take)

@@ -22,6 +22,7 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene.animation import animate, draw_figure, turn
 from regolith_studio.scene.figure import view_titles
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
@@ -144,13 +145,10 @@ class PictureDialog(QDialog):
         self.setObjectName("picture_dialog")
         self.kind = ChoiceBox("picture_kind", tr("Kind of picture"), KINDS)
         self.kind.setMinimumContentsLength(30)
-        self.scale = QSpinBox()
-        self.scale.setObjectName("picture_scale")
-        self.scale.setAccessibleName(tr("Scale of the picture"))
+        self.scale = named(QSpinBox(), "picture_scale", tr("Scale of the picture"))
         self.scale.setRange(1, MAX_SCALE)
         self.scale.setValue(2)
-        self.transparent = QCheckBox(tr("Transparent background"))
-        self.transparent.setObjectName("picture_transparent")
+        self.transparent = named(QCheckBox(tr("Transparent background")), "picture_transparent")
         buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Save | QDialogButtonBox.StandardButton.Cancel, parent=self
         )

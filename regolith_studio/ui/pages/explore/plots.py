@@ -11,12 +11,10 @@ from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
-    QHBoxLayout,
     QHeaderView,
     QSplitter,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -32,7 +30,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.layout import STRETCH, hbox, named, tabs, vbox
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.views.three_views import ThreeViews
@@ -60,8 +58,7 @@ class DescriptorTablePanel(QWidget):
         super().__init__()
         self.setObjectName("descriptor_table")
         self._keys = [key for key, row in CATALOGUE.items() if not row.costly]
-        self.table = QTableWidget(len(self._keys), len(COLUMNS))
-        self.table.setAccessibleName(tr("Descriptors"))
+        self.table = named(QTableWidget(len(self._keys), len(COLUMNS)), spoken=tr("Descriptors"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -71,9 +68,7 @@ class DescriptorTablePanel(QWidget):
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setDefaultAlignment(_RIGHT)
         FontRowHeight(self.table, 9)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.table)
+        vbox(self.table, parent=self)
         self._values: tuple[Mapping[str, float] | None, ...] = (None,) * len(COLUMNS)
         self._name_rows()
 
@@ -135,9 +130,7 @@ class ErrorBarsPanel(QWidget):
         self.plot = BarPlot(
             tr("Descriptor"), tr("Relative error [%]"), tr("The errors appear when the fit is measured.")
         )
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.plot)
+        vbox(self.plot, parent=self)
         self._shown: tuple[Results, Choices] | None = None
         self._polyhedron: dict[str, float] = {}
         self._bounds: dict[str, float] = {}
@@ -201,9 +194,7 @@ class LossCurvePanel(QWidget):
         self.setObjectName("loss_curve")
         self.plot = CurvePlot(tr("Step"), tr("Loss"), tr("The loss appears when the coarsening begins."))
         self.plot.canvas.setLimits(xMin=-0.5)  # there is no step before the first
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.plot)
+        vbox(self.plot, parent=self)
         self._results: Results | None = None
 
     def show_results(self, results: Results) -> None:
@@ -284,9 +275,7 @@ class SpectrumPanel(QWidget):
             tr("Amplitude √A<sub>l</sub> / c<sub>00</sub> [%]"),
             tr("The spectrum appears when the particle is fitted."),
         )
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.plot)
+        vbox(self.plot, parent=self)
         self._items: list[pg.BarGraphItem] = []
         self._shown: tuple[Results, Choices] | None = None
 
@@ -363,11 +352,8 @@ class SectionPanel(QWidget):
         self.direction = ChoiceBox("section_direction", tr("Direction of the section"), DIRECTIONS)
         self.direction.setMinimumContentsLength(7)
         self.direction.prefers_whole = True
-        self.flipped = QCheckBox(tr("Flip"))
-        self.flipped.setObjectName("section_flipped")
-        self.flipped.setToolTip(tr("Show the other half"))
-        self.place = NumberSlider(PLACE)
-        self.place.setObjectName("section_place")
+        self.flipped = named(QCheckBox(tr("Flip")), "section_flipped", tip=tr("Show the other half"))
+        self.place = named(NumberSlider(PLACE), "section_place")
         self.plot = CurvePlot("y [µm]", "z [µm]", tr("Turn on Section in the tool bar."))
         self.plot.setAccessibleName(tr("Cross-section"))
         self.plot.canvas.setAspectLocked(True)
@@ -411,20 +397,12 @@ class SectionPanel(QWidget):
         self.plot.set_curves(curves)
 
     def _place(self) -> None:
-        row = QHBoxLayout()
-        row.setContentsMargins(8, 6, 8, 0)
-        row.setSpacing(10)
-        row.addWidget(self.direction)
-        row.addWidget(self.flipped)
-        row.addStretch(1)
-        below = QHBoxLayout()
-        below.setContentsMargins(8, 0, 8, 0)
-        below.addWidget(self.place)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(row)
-        column.addLayout(below)
-        column.addWidget(self.plot, 1)
+        vbox(
+            hbox(self.direction, self.flipped, STRETCH, margins=(8, 6, 8, 0), spacing=10),
+            hbox(self.place, margins=(8, 0, 8, 0)),
+            (self.plot, 1),
+            parent=self,
+        )
 
 
 def _mirrored(cut: CrossSection, direction: str) -> bool:

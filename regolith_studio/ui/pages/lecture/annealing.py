@@ -4,7 +4,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QWidget
 
 from regolith_studio.coarsening.progress import placed
 from regolith_studio.geometry.arrays import FloatArray
@@ -14,6 +14,7 @@ from regolith_studio.scene import surfaces
 from regolith_studio.scene.comparison import OTHER, show_other
 from regolith_studio.scene.lecture_scenes import show_move
 from regolith_studio.scene.shapes import FIT, SceneShape
+from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.lessons import PlaybackBar, lesson_columns
 from regolith_studio.ui.theme import Theme, current_theme
@@ -52,8 +53,7 @@ class AnnealingView(QWidget):
                 make_view(self._kind, self._theme.surroundings), f"lecture_{name}", colour="polyhedron"
             )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = WrappedLabel(tr(WAIT))
-        self.sentence.setObjectName("annealing_sentence")
+        self.sentence = named(WrappedLabel(tr(WAIT)), "annealing_sentence")
         self.loss_formula = FormulaLabel(tr("The loss with its numbers"))
         self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
         self.exact_formula = FormulaLabel(tr("The loss of the exact method"))
@@ -265,10 +265,7 @@ class AnnealingView(QWidget):
             [self.sentence, self.rule, self.loss_formula, of_exact, self.exact_formula],
             self.terms,
         )
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(parts, 1)
-        layout.addWidget(self.playback)
+        vbox((parts, 1), self.playback, parent=self)
 
 
 def _outline(lesson: AnnealingLesson) -> FloatArray:

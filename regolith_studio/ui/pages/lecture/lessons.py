@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QSlider, QSplitter, QWidget
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.arrays import FloatArray
@@ -16,7 +16,7 @@ from regolith_studio.scene import surfaces
 from regolith_studio.scene.lecture_scenes import show_field
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.ui.layout import control_row, scrolled, side_by_side, stacked
+from regolith_studio.ui.layout import STRETCH, control_row, hbox, named, scrolled, side_by_side, stacked, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.theme import Theme, current_theme
@@ -69,8 +69,7 @@ class PlaybackBar(QWidget):
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName(f"{name}_step")
         self.slider.setAccessibleName(tr("Number of the {noun}", noun=tr(noun)))
-        self.speed = NumberSlider(SPEED)
-        self.speed.setObjectName(f"{name}_speed")
+        self.speed = named(NumberSlider(SPEED), f"{name}_speed")
         self.speed.setMaximumWidth(300)
         self.clock = QLabel()
         self._timer = QTimer(self)
@@ -168,14 +167,18 @@ class PlaybackBar(QWidget):
         return tr("{noun} {at} of {last}", noun=tr(self._noun), at=at, last=self.slider.maximum())
 
     def _arrange(self) -> None:
-        row = QHBoxLayout(self)
-        row.setContentsMargins(8, 4, 8, 4)
-        row.setSpacing(8)
-        for part in (self.first, self.back, self.play, self.forward):
-            row.addWidget(part)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.clock)
-        row.addWidget(self.speed)
+        hbox(
+            self.first,
+            self.back,
+            self.play,
+            self.forward,
+            (self.slider, 1),
+            self.clock,
+            self.speed,
+            parent=self,
+            margins=(8, 4, 8, 4),
+            spacing=8,
+        )
 
 
 VIEWS, PLOTS = 560, 240
@@ -196,12 +199,7 @@ def lesson_columns(
     ``name``: of the borders in the preferences. ``under_texts``: a plot below the texts.
     """
     column_of_texts = QWidget()
-    column = QVBoxLayout(column_of_texts)
-    column.setContentsMargins(10, 6, 6, 6)
-    column.setSpacing(6)
-    for each in texts:
-        column.addWidget(each)
-    column.addStretch(1)
+    vbox(*texts, STRETCH, parent=column_of_texts, margins=(10, 6, 6, 6), spacing=6)
     pictures = stacked([_row(views), _row(plots)], [VIEWS, PLOTS], stretch=0)
     right: QWidget = scrolled(column_of_texts)
     if under_texts is not None:
@@ -332,10 +330,7 @@ class DegreesView(QWidget):
 
     def _arrange(self) -> None:
         views, texts = list(self.frames.values()), [self.sentence, self.formula]
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(lesson_columns("lecture_degrees", views, [self.errors], texts), 1)
-        layout.addWidget(self.playback)
+        vbox((lesson_columns("lecture_degrees", views, [self.errors], texts), 1), self.playback, parent=self)
 
 
 DEGREE = 10
@@ -372,8 +367,7 @@ class FieldView(QWidget):
         self.material = ChoiceBox(
             "field_material", tr("Material"), {key: card.label for key, card in materials().items()}
         )
-        self.spectrum = SpectrumEditor(tr("No material is chosen."))
-        self.spectrum.setObjectName("field_spectrum")
+        self.spectrum = named(SpectrumEditor(tr("No material is chosen.")), "field_spectrum")
         self.spectrum.fit_to_font()
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw again"))
         self.reset.setObjectName("field_reset")
@@ -455,9 +449,7 @@ class FieldView(QWidget):
     def _arrange(self) -> None:
         choices = control_row(self.material, self.reset, self.another)
         views, texts = list(self.frames.values()), [choices, self.sentence, self.formula]
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(lesson_columns("lecture_field", views, [self.spectrum], texts), 1)
+        vbox((lesson_columns("lecture_field", views, [self.spectrum], texts), 1), parent=self)
 
 
 def _sentence(drawn: DrawnField, amplitudes: FloatArray, seed: int) -> str:

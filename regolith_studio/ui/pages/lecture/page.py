@@ -6,13 +6,13 @@ from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication, QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout
+from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget
 
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.layout import name_tabs
+from regolith_studio.ui.layout import STRETCH, hbox, name_tabs, named, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView, PlaybackBar
@@ -51,13 +51,10 @@ class LecturePage(PageWidget):
         for lesson in (self.annealing, self.degrees, self.field):
             lesson.build()
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
-        self.another = QPushButton(tr("Another seed"))
-        self.another.setObjectName("lecture_another")
-        self.request = QLabel()
-        self.request.setProperty("role", "hint")
+        self.another = named(QPushButton(tr("Another seed")), "lecture_another")
+        self.request = named(QLabel(), role="hint")
         self._head = (self.particle, self.another, self.request)
-        self.tabs = QTabWidget()
-        self.tabs.setObjectName("lecture_lessons")
+        self.tabs = named(QTabWidget(), "lecture_lessons")
         self._place()
         self._show_font_size()
         self.tabs.currentChanged.connect(self._turn)
@@ -291,12 +288,4 @@ class LecturePage(PageWidget):
         for widget, title in zip((self.annealing, self.degrees, self.field), titles, strict=True):
             self.tabs.addTab(widget, title)
         name_tabs(self.tabs)
-        row = QHBoxLayout()
-        row.setSpacing(10)
-        for each in self._head:
-            row.addWidget(each)
-        row.addStretch(1)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(10, 10, 10, 8)
-        layout.addLayout(row)
-        layout.addWidget(self.tabs, 1)
+        vbox(hbox(*self._head, STRETCH, spacing=10), (self.tabs, 1), parent=self, margins=(10, 10, 10, 8))

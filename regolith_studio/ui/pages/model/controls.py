@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QFormLayout,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QLineEdit,
     QPushButton,
@@ -34,7 +33,7 @@ from regolith_studio.shape_models.materials import LOG_FIELD
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
-from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.layout import STRETCH, hbox, named, side_by_side, vbox
 from regolith_studio.ui.pages.model.evaluation import StudyTableView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
@@ -175,9 +174,7 @@ class SourceControls(QWidget):
     def _place(self) -> None:
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        row = QHBoxLayout()
-        row.addWidget(self.source, 1)
-        row.addWidget(self.open)
+        row = hbox((self.source, 1), self.open)
         layout.addWidget(heading(tr("Sample or material")))
         layout.addLayout(row)
         layout.addWidget(FixedHeightText((self.findings,)))
@@ -287,17 +284,16 @@ class DrawControls(QWidget):
         form = QFormLayout()
         form.addRow(tr("Particles"), self.number)
         form.addRow(tr("Seed"), self.seed)
-        sizes = QHBoxLayout()
-        sizes.addWidget(self.smallest, 1)
-        sizes.addWidget(self.largest, 1)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Virtual particles")))
-        layout.addLayout(form)
-        layout.addWidget(self.limited)
-        layout.addLayout(sizes)
-        for widget in (self.draw, FixedHeightText((self.findings,)), self.adopt):
-            layout.addWidget(widget)
+        layout = vbox(
+            heading(tr("Virtual particles")),
+            form,
+            self.limited,
+            hbox((self.smallest, 1), (self.largest, 1)),
+            self.draw,
+            FixedHeightText((self.findings,)),
+            self.adopt,
+            parent=self,
+        )
         parts = QFormLayout()  # last, because only mixtures have them
         parts.addRow(self._names_label, self.names)
         layout.addLayout(parts)
@@ -364,19 +360,9 @@ class DistributionsPanel(QWidget):
         self.table = StudyTableView("model_draws_in_noise", tr("Distances of the draws"))
         self.weighting.setMinimumContentsLength(26)
         self._compared: DistributionComparison | None = None
-        row = QHBoxLayout()
-        row.setContentsMargins(8, 6, 8, 0)
-        row.setSpacing(10)
-        row.addWidget(self.key)
-        row.addWidget(self.weighting)
-        row.addStretch(1)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(row)
+        layout = vbox(hbox(self.key, self.weighting, STRETCH, margins=(8, 6, 8, 0), spacing=10), parent=self)
         for label in (self.words, self.assessment):
-            below = QHBoxLayout()
-            below.setContentsMargins(8, 0, 8, 0)
-            below.addWidget(label)
+            below = hbox(label, margins=(8, 0, 8, 0))
             layout.addLayout(below)
         self._one = side_by_side([self.plot, self.table], [500, 400], stretch=0)
         self._one.setObjectName("model_distribution_parts")
@@ -465,24 +451,16 @@ class LiveShape(QWidget):
 
     def __init__(self, view: SceneView) -> None:
         super().__init__()
-        self.spectrum = SpectrumEditor(tr(NO_MODEL))
-        self.spectrum.setObjectName("model_spectrum")
+        self.spectrum = named(SpectrumEditor(tr(NO_MODEL)), "model_spectrum")
         self.frame = ViewFrame(view, "drawn", colour="fit")
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Another particle"))
         self.reset.setObjectName("model_reset_spectrum")
         self.another.setObjectName("model_another")
-        buttons = QHBoxLayout()
-        buttons.setContentsMargins(8, 0, 8, 6)
-        buttons.addWidget(self.reset)
-        buttons.addStretch(1)
-        buttons.addWidget(self.another)
-        left = QVBoxLayout()
-        left.addWidget(self.spectrum, 1)
-        left.addLayout(buttons)
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(left, 3)
-        layout.addWidget(self.frame, 2)
+        hbox(
+            (vbox((self.spectrum, 1), hbox(self.reset, STRETCH, self.another, margins=(8, 0, 8, 6))), 3),
+            (self.frame, 2),
+            parent=self,
+        )
         self._framed = False
         self.show_mesh(None)
 
@@ -513,9 +491,7 @@ class ShapeGallery(QWidget):
     def __init__(self, view: SceneView) -> None:
         super().__init__()
         self.frame = ViewFrame(view, "gallery", colour="particle")
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.frame)
+        vbox(self.frame, parent=self)
         self._shown: tuple[tuple[Mesh, ...], tuple[Mesh, ...]] = ((), ())
         self.show_shapes((), ())
 

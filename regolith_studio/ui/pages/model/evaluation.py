@@ -17,7 +17,6 @@ from PySide6.QtWidgets import (
     QStackedLayout,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -38,7 +37,7 @@ from regolith_studio.studies.population_tables import (
     ranking_table,
     target_table,
 )
-from regolith_studio.ui.layout import scrolled, tabs
+from regolith_studio.ui.layout import scrolled, tabs, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
@@ -75,10 +74,7 @@ class PanelGrid(QWidget):
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.legend.setWordWrap(True)
         self._grid = QGridLayout()
-        column = QVBoxLayout(self)
-        column.setContentsMargins(8, 6, 8, 6)
-        column.addWidget(self.legend)
-        column.addLayout(self._grid, 1)
+        vbox(self.legend, (self._grid, 1), parent=self, margins=(8, 6, 8, 6))
 
     def set_panels(self, panels: Sequence[PopulationPanel], study: PopulationStudy) -> None:
         """Draw other panels."""
@@ -307,11 +303,7 @@ class EvaluationPanel(QWidget):
             self.tabs.addTab(self.tables[name], tr(title))
         for name, title in FIGURES.items():
             self.tabs.addTab(self.places[name], tr(title))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(8, 6, 8, 0)
-        layout.addWidget(self.card)
-        layout.addLayout(self._options())
-        layout.addWidget(self.tabs, 1)
+        vbox(self.card, self._options(), (self.tabs, 1), parent=self, margins=(8, 6, 8, 0))
 
     def value(self) -> dict[str, Any]:
         """All models or only the selected one, number of splits, and draws from each fit."""
@@ -409,10 +401,7 @@ class EvaluationPanel(QWidget):
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         filled = QWidget()
-        column = QVBoxLayout(filled)
-        column.setContentsMargins(8, 6, 8, 6)
-        column.addWidget(self.ranking, 1)
-        column.addWidget(self.notes)
+        vbox((self.ranking, 1), self.notes, parent=filled, margins=(8, 6, 8, 6))
         page = QWidget()
         self._stack = QStackedLayout(page)
         self._stack.addWidget(centred_hint(tr(WAITING)))

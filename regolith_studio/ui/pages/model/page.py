@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
@@ -36,7 +36,7 @@ from regolith_studio.shape_models.materials import MaterialCard, materials, writ
 from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import hbox, padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import (
     DistributionsPanel,
@@ -515,9 +515,7 @@ class ModelPage(PageWidget):
         parts = [padded(middle, 10, 10, 2, 8), scrolled_column([self.source, self.drawing])]
         columns = side_by_side(parts, [900, 310], stretch=0)
         columns.setObjectName("model_columns")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(columns)
+        hbox(columns, parent=self)
 
     def _connect(self) -> None:
         self.source.sourceChanged.connect(lambda _: self._show_source())

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QSpinBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFormLayout, QSpinBox, QWidget
 
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dem.run_io import RunSummary
@@ -34,7 +34,7 @@ from regolith_studio.studies.repose_calibration import (
     angle_target,
     density_target,
 )
-from regolith_studio.ui.layout import equal_parts
+from regolith_studio.ui.layout import equal_parts, named, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.runs import explanation, interval_bars
 from regolith_studio.ui.pages.repose.setup import SetupPanel
@@ -78,10 +78,7 @@ class RunPanel(QWidget):
         left.setLayout(form)
         row = equal_parts(Qt.Orientation.Horizontal, (left, *views))
         row.setObjectName(f"{name}_parts")
-        column = QVBoxLayout(self)
-        column.setContentsMargins(4, 4, 4, 4)
-        column.addWidget(card)
-        column.addWidget(row, 1)
+        vbox(card, (row, 1), parent=self, margins=(4, 4, 4, 4))
 
     def set_running(self, running: bool) -> None:
         """Set whether it is running: the form is not edited then."""
@@ -101,9 +98,7 @@ class RunPanel(QWidget):
 
 def keys_box(entries: Mapping[str, tuple[str, str]], name: str, spoken: str) -> QComboBox:
     """A choice of keys by their labels."""
-    box = QComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(spoken)
+    box = named(QComboBox(), name, spoken)
     for key, (label, _) in entries.items():
         box.addItem(tr(label), key)
     return box
@@ -111,9 +106,7 @@ def keys_box(entries: Mapping[str, tuple[str, str]], name: str, spoken: str) -> 
 
 def count_box(name: str, spoken: str, maximum: int) -> QSpinBox:
     """A number from 1 on."""
-    box = QSpinBox()
-    box.setObjectName(name)
-    box.setAccessibleName(spoken)
+    box = named(QSpinBox(), name, spoken)
     box.setRange(1, maximum)
     return box
 
@@ -268,9 +261,7 @@ class CalibrationController:
 
 
 def _number(name: str, accessible: str, low: float, high: float, value: float, unit: str) -> DecimalField:
-    field = DecimalField()
-    field.setObjectName(name)
-    field.setAccessibleName(accessible)
+    field = named(DecimalField(), name, accessible)
     field.setRange(low, high)
     field.setSingleStep(0.1)
     field.setSuffix(unit)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QWidget
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.evaluation.profile import Discs, Profile, project
@@ -17,6 +17,7 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.messages import N_
 from regolith_studio.studies.figures.repose import framed
+from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.pages.repose.setup import CaseScale
 from regolith_studio.ui.result_card import ResultRecord, ResultState
 from regolith_studio.ui.translation import localized, tr, translate
@@ -301,9 +302,7 @@ class HeapSections(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._sections: dict[float, HeapSection] = {}
-        self.azimuth = QComboBox()
-        self.azimuth.setObjectName("repose_azimuth")
-        self.azimuth.setAccessibleName(tr("Section"))
+        self.azimuth = named(QComboBox(), "repose_azimuth", tr("Section"))
         self.plot = SectionPlot()
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
@@ -312,10 +311,7 @@ class HeapSections(QWidget):
         row.addWidget(self._label)
         row.addWidget(self.azimuth)
         row.addStretch(1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(row)
-        column.addWidget(self.plot, 1)
+        vbox(row, (self.plot, 1), parent=self)
         self.azimuth.currentIndexChanged.connect(lambda *_: self._show_chosen())
         self.show_nothing(tr("Run a test or open positions to see its section."))
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from platformdirs import user_data_path
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QFileDialog, QVBoxLayout
+from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
@@ -40,7 +40,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
 from regolith_studio.studies.repose import ReposeStudyRun
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs
+from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.repose.calibration import (
     CalibrationController,
@@ -522,11 +522,7 @@ class ReposePage(PageWidget):
         self.tabs = tabs("repose_tabs", pages)
         pictures = side_by_side([self.tabs, self.player], [700, 520], stretch=0)
         pictures.setObjectName("repose_pictures")
-        column = QVBoxLayout(self)
-        column.setContentsMargins(10, 10, 10, 8)
-        column.addWidget(self.angle)
-        column.addWidget(self.limits)
-        column.addWidget(pictures, 1)
+        vbox(self.angle, self.limits, (pictures, 1), parent=self, margins=(10, 10, 10, 8))
 
     def _connect(self) -> None:
         self.setup.valueChanged.connect(self._ask_preview)

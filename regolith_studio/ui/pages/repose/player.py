@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, QTimer
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPushButton, QSlider, QWidget
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.run_io import read_final_state
@@ -14,6 +14,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import Direction, filled, framing_pose
+from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr
 from regolith_studio.ui.views.image_view import make_view
@@ -51,28 +52,20 @@ class RunPlayer(QWidget):
         self._settle = QTimer(self, singleShot=True, interval=SETTLE)
         self._settle.timeout.connect(self._draw_settled)
         self.frame.view.when_moved(lambda _: self._draw_coarsely())
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName("repose_time")
-        self.slider.setAccessibleName(tr("Time of the run"))
-        self.button = QPushButton(tr("Play"))
-        self.button.setObjectName("repose_play")
-        self.clock = QLabel()
-        self.clock.setProperty("role", "hint")
+        self.slider = named(QSlider(Qt.Orientation.Horizontal), "repose_time", tr("Time of the run"))
+        self.button = named(QPushButton(tr("Play")), "repose_play")
+        self.clock = named(QLabel(), role="hint")
         self.clock.setMinimumWidth(110)
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME)
         self._timer.timeout.connect(self._next)
         self.button.clicked.connect(self.toggle)
         self.slider.valueChanged.connect(self._show_file)
-        row = QHBoxLayout()
-        row.setContentsMargins(8, 2, 8, 4)
-        row.addWidget(self.button)
-        row.addWidget(self.slider, 1)
-        row.addWidget(self.clock)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.frame, 1)
-        column.addLayout(row)
+        vbox(
+            (self.frame, 1),
+            hbox(self.button, (self.slider, 1), self.clock, margins=(8, 2, 8, 4)),
+            parent=self,
+        )
         self.frame.set_texts(tr("Lifting cylinder"), tr("Choose a dataset to see the cylinder filled."))
         self._set_files([])
 

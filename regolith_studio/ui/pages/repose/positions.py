@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QFormLayout,
     QLineEdit,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -27,7 +26,7 @@ from regolith_studio.readers.positions import ParticlePositions, asks_for_column
 from regolith_studio.readers.settings import unit_factor
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
-from regolith_studio.ui.layout import GrowingDialog
+from regolith_studio.ui.layout import GrowingDialog, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label, short_number
@@ -83,10 +82,7 @@ class PositionsDialog(GrowingDialog):
         )
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
-        layout = QVBoxLayout(self)
-        layout.addLayout(form)
-        layout.addWidget(self.size_note)
-        layout.addWidget(buttons)
+        vbox(form, self.size_note, buttons, parent=self, margins=None)
         self.unit.currentIndexChanged.connect(self._show_size)
         self.columns.textChanged.connect(self._offer_diameter)
         low, high = HEAP_WIDTHS

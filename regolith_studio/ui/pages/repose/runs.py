@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QWidget
 
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
+from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import TextTable
@@ -55,23 +56,15 @@ class RunsPanel(QWidget):
         super().__init__()
         self._runs: list[RunSummary] = []
         self.table = TextTable("repose_runs", tr("Runs"), [tr(each) for each in HEADINGS])
-        self.against = QComboBox()
-        self.against.setObjectName("repose_against")
-        self.against.setAccessibleName(tr("Compare the angle against"))
+        self.against = named(QComboBox(), "repose_against", tr("Compare the angle against"))
         for label, path in AGAINST.items():
             self.against.addItem(tr(label), path)
         self.plot = CurvePlot(
             tr("Static friction"), tr("Angle [°]"), tr("Runs that ended in a pile are compared here.")
         )
         right = QWidget()
-        column = QVBoxLayout(right)
-        column.setContentsMargins(0, 4, 0, 0)
-        column.addWidget(self.against)
-        column.addWidget(self.plot, 1)
-        row = QVBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self.table, 1)
-        row.addWidget(right, 1)
+        vbox(self.against, (self.plot, 1), parent=right, margins=(0, 4, 0, 0))
+        vbox((self.table, 1), (right, 1), parent=self)
         self.table.chosen.connect(lambda row: self.chosen.emit(self._runs[row]))
         self.against.currentIndexChanged.connect(lambda *_: self._compare())
 

@@ -34,7 +34,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
-from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.layout import Collapsible, hbox, named
 from regolith_studio.ui.pages.repose.runs import duration_text
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
@@ -102,13 +102,8 @@ class LimitsStrip(QWidget):
         for place, (light, text, button) in enumerate(
             zip(self.lights, self.texts, self.buttons, strict=True)
         ):
-            frame = QFrame()
-            frame.setProperty("role", "card")
-            inside = QHBoxLayout(frame)
-            inside.setContentsMargins(8, 3, 6, 3)
-            inside.addWidget(light)
-            inside.addWidget(text, 1)
-            inside.addWidget(button)
+            frame = named(QFrame(), role="card")
+            hbox(light, (text, 1), button, parent=frame, margins=(8, 3, 6, 3))
             button.setObjectName(f"repose_limit_{place}")
             button.clicked.connect(lambda _=False, place=place: self._ask(place))
             row.addWidget(frame, 1)
@@ -206,16 +201,12 @@ class SetupPanel(QWidget):
         self.sample_button = _button(
             tr("From open particles"), "repose_sample", tr("Coarsen the open particles first")
         )
-        self.particles = QSpinBox()
-        self.particles.setObjectName("repose_particles")
-        self.particles.setAccessibleName(tr("Number of particles"))
+        self.particles = named(QSpinBox(), "repose_particles", tr("Number of particles"))
         self.particles.setMaximum(MAX_PARTICLES)
         self.particles.setSingleStep(100)
         self.particles.setKeyboardTracking(False)
         self.particles.setValue(PRESETS["Teaching"])
-        self.seed = QSpinBox()
-        self.seed.setObjectName("repose_seed")
-        self.seed.setAccessibleName(tr("Seed"))
+        self.seed = named(QSpinBox(), "repose_seed", tr("Seed"))
         self.seed.setRange(0, 2**31 - 1)
         self.shapes = _choice(SHAPES, "repose_shapes", tr("Shapes"))
         self.cohesion = _choice(COHESION, "repose_cohesion", tr("Cohesion"))
@@ -425,17 +416,11 @@ class SetupPanel(QWidget):
 
 
 def _button(text: str, name: str, tip: str) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    button.setAccessibleName(tip)
-    return button
+    return named(QPushButton(text), name, tip, tip=tip)
 
 
 def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
-    box = ElidedComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(spoken)
+    box = named(ElidedComboBox(), name, spoken)
     box.setMinimumContentsLength(max(10, len(tr(next(iter(entries))))))
     for text, data in entries.items():
         box.addItem(tr(text), data)
@@ -454,11 +439,7 @@ def _column(*parts: QWidget | QLayout) -> QVBoxLayout:
 
 
 def _row(*widgets: QWidget) -> QHBoxLayout:
-    row = QHBoxLayout()
-    row.setSpacing(6)
-    for widget in widgets:
-        row.addWidget(widget)
-    return row
+    return hbox(*widgets, spacing=6)
 
 
 def engine_table() -> TextTable:

@@ -13,14 +13,12 @@ from PySide6.QtWidgets import (
     QApplication,
     QCheckBox,
     QFileDialog,
-    QHBoxLayout,
     QHeaderView,
     QLabel,
     QLineEdit,
     QScrollArea,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -38,7 +36,7 @@ from regolith_studio.scene.overlays import FAULT_COLOURS
 from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, health_sentences, sample_table
-from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import STRETCH, equal_parts, hbox, named, side_by_side, stacked, tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.match import MatchPanel
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
@@ -106,17 +104,15 @@ class HealthPanel(QWidget):
         self.setObjectName("health_report")
         self._repaired = False
         self.table = self._make_table()
-        self.words = WrappedLabel()
-        self.words.setObjectName("health_words")
+        self.words = named(WrappedLabel(), "health_words")
         self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.where = QCheckBox(tr("Show in the view"))
-        self.where.setObjectName("health_where")
-        self.where.setToolTip(
-            tr("Colours the faults in the picture, as they were before the mesh was repaired")
+        self.where = named(
+            QCheckBox(tr("Show in the view")),
+            "health_where",
+            tip=tr("Colours the faults in the picture, as they were before the mesh was repaired"),
         )
         self.where.setChecked(True)
-        self.legend = QLabel()
-        self.legend.setObjectName("health_legend")
+        self.legend = named(QLabel(), "health_legend")
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.legend.setWordWrap(True)
         self._place()
@@ -153,8 +149,7 @@ class HealthPanel(QWidget):
         self.legend.setText("<br>".join(lines) or tr("Nothing to show in the view."))
 
     def _make_table(self) -> QTableWidget:
-        table = QTableWidget(0, 3)
-        table.setAccessibleName(tr("Health of the mesh"))
+        table = named(QTableWidget(0, 3), spoken=tr("Health of the mesh"))
         table.setHorizontalHeaderLabels([tr("Mesh"), tr("in the file"), tr("repaired")])
         table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
@@ -173,11 +168,7 @@ class HealthPanel(QWidget):
 
     def _place(self) -> None:
         right = self._right = QWidget()
-        column = QVBoxLayout(right)
-        column.setContentsMargins(8, 4, 4, 4)
-        for widget in (self.where, self.legend, self.words):
-            column.addWidget(widget)
-        column.addStretch(1)
+        vbox(self.where, self.legend, self.words, STRETCH, parent=right, margins=(8, 4, 4, 4))
         scrolled = self._scrolled = QScrollArea()
         scrolled.setWidgetResizable(True)
         scrolled.setProperty("role", "texts")
@@ -185,10 +176,7 @@ class HealthPanel(QWidget):
         scrolled.setWidget(right)
         for ground in (scrolled.viewport(), right):
             ground.setAutoFillBackground(False)  # that of the tab is seen
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.table, 3)
-        layout.addWidget(scrolled, 2)
+        hbox((self.table, 3), (scrolled, 2), parent=self)
 
 
 def _legend_entry(kind: str, count: int) -> str:
@@ -267,9 +255,7 @@ class SamplePage(PageWidget):
         self.filter.setClearButtonEnabled(True)
         self.assessment = hint_label(role="warning")
         self.assessment.hide()
-        self.table = ParticleTable(particle_columns())
-        self.table.setObjectName("sample_table")
-        self.table.setAccessibleName(tr("All particles"))
+        self.table = named(ParticleTable(particle_columns()), "sample_table", tr("All particles"))
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.statistics = StatisticsPanel()
         self.scatter, self.match = ScatterPanel(), MatchPanel(self._context)
@@ -343,10 +329,13 @@ class SamplePage(PageWidget):
 
     def _place(self) -> None:
         left = QWidget()
-        column = QVBoxLayout(left)
-        column.setContentsMargins(10, 10, 2, 8)
-        for widget in (self.title, self.filter, FixedHeightText((self.assessment,), 1)):
-            column.addWidget(widget)
+        column = vbox(
+            self.title,
+            self.filter,
+            FixedHeightText((self.assessment,), 1),
+            parent=left,
+            margins=(10, 10, 2, 8),
+        )
         self.reports = tabs(
             "sample_tabs", [(self.statistics, tr("Statistics")), (self.health, tr("Health of the mesh"))]
         )
@@ -364,9 +353,7 @@ class SamplePage(PageWidget):
         right.setContentsMargins(2, 10, 10, 8)
         columns = side_by_side([left, right], [1150, 600], stretch=0)
         columns.setObjectName("sample_columns")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(columns)
+        hbox(columns, parent=self)
 
     def _connect(self) -> None:
         self.filter.textChanged.connect(self._filter)

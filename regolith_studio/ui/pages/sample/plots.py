@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QTableWidget,
     QTableWidgetItem,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -27,7 +26,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import has_weights, statistics_distribution, statistics_table
-from regolith_studio.ui.layout import control_row
+from regolith_studio.ui.layout import control_row, named, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
@@ -57,12 +56,11 @@ class ScatterPanel(QWidget):
         self._corners: dict[tuple[int, int], pg.TextItem] = {}
         self.across = _descriptor_box("scatter_x", tr("Horizontal axis"))
         self.up = _descriptor_box("scatter_y", tr("Vertical axis"))
-        self.log = QCheckBox(tr("Logarithmic"))
-        self.log.setObjectName("scatter_log")
+        self.log = named(QCheckBox(tr("Logarithmic")), "scatter_log")
         self.zingg = QToolButton()
-        self.zingg.setText("Zingg")
         self.zingg.setObjectName("scatter_zingg")
         self.zingg.setToolTip(tr("Flatness against elongation, with Zingg's classes of form"))
+        self.zingg.setText("Zingg")
         self.plot = Plot("", "", tr("The plot appears when the particles are measured."))
         self._arrange()
         self.set_axes(*ZINGG)
@@ -92,11 +90,11 @@ class ScatterPanel(QWidget):
 
     def _arrange(self) -> None:
         against = QLabel(tr("against"))
-        row = control_row(self.up, against, self.across, self.log, self.zingg, margins=(8, 6, 8, 0))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(row)
-        layout.addWidget(self.plot, 1)
+        vbox(
+            control_row(self.up, against, self.across, self.log, self.zingg, margins=(8, 6, 8, 0)),
+            (self.plot, 1),
+            parent=self,
+        )
         for box in (self.across, self.up):
             box.currentIndexChanged.connect(lambda _at: self._draw())
         self.log.toggled.connect(lambda _on: self._draw())
@@ -191,9 +189,7 @@ class ScatterPanel(QWidget):
 
 
 def _descriptor_box(name: str, accessible: str) -> QComboBox:
-    box = ElidedComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(accessible)
+    box = named(ElidedComboBox(), name, accessible)
     box.setMinimumContentsLength(max(len(tr(CATALOGUE[key].label)) for key in ZINGG))
     for key, row in CATALOGUE.items():
         if not row.costly:
@@ -238,16 +234,12 @@ class StatisticsPanel(QWidget):
         self.plot = CurvePlot(
             "", tr("Share [%]"), tr("The distribution appears when particles are measured.")
         )
-        self.key = QComboBox()
-        self.key.setObjectName("statistics_key")
-        self.key.setAccessibleName(tr("Descriptor of the statistics"))
+        self.key = named(QComboBox(), "statistics_key", tr("Descriptor of the statistics"))
         for key, row in CATALOGUE.items():
             if not row.costly:
                 self.key.addItem(tr(row.label), key)
                 self.key.setItemData(self.key.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
-        self.weighting = QComboBox()
-        self.weighting.setObjectName("statistics_weighting")
-        self.weighting.setAccessibleName(tr("Weighting of the statistics"))
+        self.weighting = named(QComboBox(), "statistics_weighting", tr("Weighting of the statistics"))
         for weighting in WEIGHTINGS:
             self.weighting.addItem(tr(_WEIGHTING_LABELS[weighting]), weighting)
         self.border = QCheckBox(tr("correct for border grains"))
@@ -260,24 +252,22 @@ class StatisticsPanel(QWidget):
         )
         self.border.setChecked(True)
         self.border.hide()
-        self.table = QTableWidget()
-        self.table.setAccessibleName(tr("Statistics of groups"))
+        self.table = named(QTableWidget(), spoken=tr("Statistics of groups"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setShowGrid(False)
         self.table.verticalHeader().hide()
         FontRowHeight(self.table, 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         self.table.setFrameShape(self.table.Shape.NoFrame)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(8, 8, 8, 4)
-        layout.addWidget(self.card)
-        layout.addWidget(self.table, 1)
+        vbox(self.card, (self.table, 1), parent=self, margins=(8, 8, 8, 4))
         self.distribution = QWidget()
-        column = QVBoxLayout(self.distribution)
-        column.setContentsMargins(8, 6, 8, 0)
-        column.addWidget(control_row(self.key, self.weighting))
-        column.addWidget(self.border)
-        column.addWidget(self.plot, 1)
+        vbox(
+            control_row(self.key, self.weighting),
+            self.border,
+            (self.plot, 1),
+            parent=self.distribution,
+            margins=(8, 6, 8, 0),
+        )
         self.key.currentIndexChanged.connect(lambda _at: self._fill())
         self.weighting.currentIndexChanged.connect(lambda _at: self._fill())
         self.border.toggled.connect(lambda _on: self._fill())

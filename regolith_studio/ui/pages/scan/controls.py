@@ -33,7 +33,7 @@ from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.jobs.scan_jobs import FirstLook, Scan
 from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.region import RegionSettings
-from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.layout import Collapsible, named, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.fields import ChoiceBox, DecimalField
@@ -86,8 +86,8 @@ class SegmentationControls(QWidget):
         self.region = SettingsForm(RegionSettings)
         self.draw_box = QPushButton(tr("Draw the region"))
         self.draw_box.setObjectName("draw_region")
-        self.draw_box.setCheckable(True)
         self.draw_box.setToolTip(tr("Draw a box in a slice; what is outside of it is left out."))
+        self.draw_box.setCheckable(True)
         self.diameter, self.region_error, self.heights = hint_label(), hint_label(), hint_label()
         self.region_fold = Collapsible(
             tr("Region of interest"), self.region, self.draw_box, self.region_error
@@ -248,15 +248,16 @@ class SegmentationControls(QWidget):
 
     def _arrange(self) -> None:
         self.level.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)  # not for 1e9
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.region_fold)
-        layout.addWidget(heading(tr("Segmentation")))
-        layout.addLayout(self._grey)
-        layout.addSpacing(4)
-        layout.addWidget(heading(tr("Separation of grains")))
-        layout.addLayout(self._parting)
-        layout.addWidget(FixedHeightText((self.heights,)))
+        layout = vbox(
+            self.region_fold,
+            heading(tr("Segmentation")),
+            self._grey,
+            4,
+            heading(tr("Separation of grains")),
+            self._parting,
+            FixedHeightText((self.heights,)),
+            parent=self,
+        )
         self.heights.hide()
         layout.addSpacing(4)
         layout.addWidget(heading(tr("Selection of grains")))
@@ -266,17 +267,12 @@ class SegmentationControls(QWidget):
 
 def button(name: str, words: str, tip: str) -> QPushButton:
     """A button with its object name and tool tip."""
-    made = QPushButton(words)
-    made.setObjectName(name)
-    made.setToolTip(tip)
-    return made
+    return named(QPushButton(words), name, tip=tip)
 
 
 def choice(name: str, words: str, rows: Sequence[tuple[Any, str]]) -> QComboBox:
     """A combo box of values and labels; `words` is the accessible name. Translates the labels only."""
-    box = QComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(words)
+    box = named(QComboBox(), name, words)
     for key, label in rows:
         box.addItem(tr(label), key)
     return box
@@ -451,6 +447,4 @@ def _about(name: str, volume: Volume | FirstLook) -> str:
 
 def _words() -> WrappedLabel:
     """A label for the result of a step, with all lines visible."""
-    label = WrappedLabel()
-    label.setProperty("role", "hint")
-    return label
+    return named(WrappedLabel(), role="hint")

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from PySide6.QtCore import QEvent, QObject, QTimer, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
+from PySide6.QtWidgets import QSizePolicy
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.label_table import voxel_inside
@@ -25,7 +25,7 @@ from regolith_studio.jobs.scan_jobs import (
     preview_part,
     view_labels,
 )
-from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, tabs
+from regolith_studio.ui.layout import CONTROLS_WIDTH, hbox, padded, scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls, WorkflowPanel
 from regolith_studio.ui.pages.scan.corrections import Corrections
@@ -417,9 +417,7 @@ class ScanPage(PageWidget):
             [padded(self.slices, 10, 10, 2, 8), controls], [1100, CONTROLS_WIDTH + 20], stretch=0
         )
         columns.setObjectName("scan_columns")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(columns)
+        hbox(columns, parent=self)
 
     def _connect(self) -> None:
         self.opening.leaving.connect(self._on_leaving)

@@ -9,10 +9,11 @@ import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QWheelEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QSlider, QWidget
 
 from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Box, Volume
+from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -63,8 +64,7 @@ class SliceView(QWidget):
         self._volume: Volume | None = None
         self._sections: SliceImages | None = None
         self._class_colours: NDArray[np.uint8] | None = None
-        self.title = QLabel()
-        self.title.setProperty("role", "heading")
+        self.title = named(QLabel(), role="heading")
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName(f"slice_{AXES[axis]}")
         self.slider.setAccessibleName(tr("Slice along {axis}", axis=AXES[axis]))
@@ -235,15 +235,9 @@ class SliceView(QWidget):
         for item in (*layers, self._frame, *self._cross):
             view.addItem(item)
         self._frame.setBrush(pg.mkBrush(None))
-        row = QHBoxLayout()
-        row.setContentsMargins(4, 0, 4, 0)
-        row.addWidget(self.title)
-        row.addWidget(self.slider, 1)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(2)
-        layout.addLayout(row)
-        layout.addWidget(self.canvas, 1)
+        vbox(
+            hbox(self.title, (self.slider, 1), margins=(4, 0, 4, 0)), (self.canvas, 1), parent=self, spacing=2
+        )
 
     def picked(self, point: QPointF) -> None:
         """Select the voxel at a point of the scene in micrometres."""

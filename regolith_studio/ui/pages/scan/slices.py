@@ -20,7 +20,7 @@ from regolith_studio.jobs.scan_jobs import Scan
 from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.scene.surfaces import show_grains
-from regolith_studio.ui.layout import equal_parts
+from regolith_studio.ui.layout import equal_parts, named, vbox
 from regolith_studio.ui.pages.scan.slice_view import SliceView, colours_of_labels
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush, BrushPanel
 from regolith_studio.ui.theme import Theme, current_theme
@@ -465,14 +465,9 @@ class SlicesView(QWidget):
 
     def _arrange(self) -> None:
         above = equal_parts(Qt.Orientation.Horizontal, self.views)
-        self.readout = ElidedLabel(role="hint")
-        self.readout.setObjectName("scan_readout")
+        self.readout = named(ElidedLabel(role="hint"), "scan_readout")
         slices = QWidget()
-        column = QVBoxLayout(slices)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
-        column.addWidget(above, 1)
-        column.addWidget(self.readout)
+        vbox((above, 1), self.readout, parent=slices, spacing=2)
         below = equal_parts(Qt.Orientation.Horizontal, [self.histogram, self.grains.frame])
         page = equal_parts(Qt.Orientation.Vertical, [slices, below])
         hint = QWidget()

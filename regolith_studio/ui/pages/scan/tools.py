@@ -31,6 +31,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
+from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.pages.scan.controls import button, choice
 from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec
@@ -128,8 +129,7 @@ class BrushPanel(TrainingPanel):
         self.paint.setObjectName("brush_paint")
         self.paint.setToolTip(tr("Strokes in the slices train a classifier of voxels."))
         self.kind = choice("brush_class", tr("Class of the brush"), tuple(enumerate(_CLASS_NAMES)))
-        self.eraser = QCheckBox(tr("Eraser"))
-        self.eraser.setObjectName("brush_eraser")
+        self.eraser = named(QCheckBox(tr("Eraser")), "brush_eraser")
         self.diameter = NumberSlider(SIZE)
         self.diameter.field.setObjectName("brush_size")
         self.diameter.setValue(4)
@@ -218,9 +218,7 @@ class BrushPanel(TrainingPanel):
         self.labels.clicked.connect(self.labelsRequested)
 
     def _arrange(self) -> None:
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Classifier")))
+        layout = vbox(heading(tr("Classifier")), parent=self)
         rows: tuple[tuple[QWidget, ...], ...] = (
             (self.paint, self.eraser),
             (self.kind,),
@@ -267,10 +265,10 @@ class ObjectsPanel(TrainingPanel):
                 tr("Save the object classifier for other scans"),
             ),
         )
-        self.mark = QCheckBox(tr("Mark examples"))
-        self.mark.setObjectName("objects_mark")
-        self.mark.setToolTip(
-            tr("A click on an object makes it an example of a class; all others are classified.")
+        self.mark = named(
+            QCheckBox(tr("Mark examples")),
+            "objects_mark",
+            tip=tr("A click on an object makes it an example of a class; all others are classified."),
         )
         self.kind = choice(
             "objects_class", tr("Class of the next example"), tuple(enumerate(_OBJECT_CLASSES))
@@ -328,12 +326,7 @@ class ObjectsPanel(TrainingPanel):
             box.currentIndexChanged.connect(self.actionsChanged)
 
     def _arrange(self) -> None:
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Object classifier")))
-        layout.addWidget(self.mark)
-        layout.addWidget(self.kind)
-        layout.addWidget(self.state)
+        layout = vbox(heading(tr("Object classifier")), self.mark, self.kind, self.state, parent=self)
         form = QFormLayout()
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         for label, box in zip(self.counts, self.action_boxes, strict=True):
@@ -433,9 +426,7 @@ class EditsPanel(QWidget):
         self._group = QButtonGroup(self)
         self.tools = {}
         for kind, words, tip in TOOLS:
-            made = QRadioButton(tr(words))
-            made.setObjectName(f"edit_{kind or 'look'}")
-            made.setToolTip(tr(tip))
+            made = named(QRadioButton(tr(words)), f"edit_{kind or 'look'}", tip=tr(tip))
             self._group.addButton(made)
             self.tools[kind] = made
         self.tools[NO_TOOL].setChecked(True)
@@ -443,8 +434,7 @@ class EditsPanel(QWidget):
         self.diameter.field.setObjectName("edit_size")
         self.diameter.setValue(6)
         self.hint = hint_label()
-        self.list = QListWidget()
-        self.list.setAccessibleName(tr("Corrections so far"))
+        self.list = named(QListWidget(), spoken=tr("Corrections so far"))
         self.list.setMinimumHeight(80)
         self.suspects = SuspectsTable()
         self.undo = button("edit_undo", tr("Undo"), tr("Undo the last step (Ctrl+Z)"))
@@ -488,9 +478,7 @@ class EditsPanel(QWidget):
             self.toolChanged.emit(self.tool)
 
     def _arrange(self) -> None:
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Corrections by hand")))
+        layout = vbox(heading(tr("Corrections by hand")), parent=self)
         grid = QGridLayout()
         for number, made in enumerate(self.tools.values()):
             grid.addWidget(made, number // 2, number % 2)

@@ -10,10 +10,8 @@ from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QSpinBox,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -21,6 +19,7 @@ from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
+from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import inert, tr, translate
 from regolith_studio.ui.widgets.fields import DecimalField
@@ -78,8 +77,7 @@ class VolumeDialog(QDialog):
         self.kind = choice("kind", tr("Content of the volume"), KINDS)
         self.axes = choice("axes", tr("Order of the array's axes"), AXES)
         self._gaps = gaps or {}
-        self.allow_gaps = QCheckBox()
-        self.allow_gaps.setObjectName("allow_gaps")
+        self.allow_gaps = named(QCheckBox(), "allow_gaps")
         self._said = tr("A raw file has no header. Enter the number of voxels and their type.")
         self.assessment, self.facts = hint_label(), hint_label()
         self._buttons = QDialogButtonBox(
@@ -207,10 +205,7 @@ class VolumeDialog(QDialog):
         form.addRow(tr("Content"), self.kind)
         if self._gaps:
             form.addRow(self.allow_gaps)
-        layout = QVBoxLayout(self)
-        layout.addWidget(QLabel(inert(self._path.name)))
-        layout.addWidget(self.facts)
-        layout.addLayout(form)
+        layout = vbox(QLabel(inert(self._path.name)), self.facts, form, parent=self, margins=None)
         self._buttons.accepted.connect(self.accept)
         self._buttons.rejected.connect(self.reject)
         layout.addWidget(self._buttons)
@@ -234,26 +229,19 @@ def needs_asking(header: VolumeHeader) -> bool:
 
 
 def _number(name: str, words: str) -> DecimalField:
-    field = DecimalField()
-    field.setObjectName(name)
-    field.setAccessibleName(words)
+    field = named(DecimalField(), name, words)
     field.setDecimals(4)
     field.setRange(0.0001, 100_000.0)
     return field
 
 
 def _count(name: str, words: str, least: int = 1) -> QSpinBox:
-    field = QSpinBox()
-    field.setObjectName(name)
-    field.setAccessibleName(words)
+    field = named(QSpinBox(), name, words)
     field.setRange(least, 1_000_000_000)
     return field
 
 
 def _row(parts: Sequence[QWidget]) -> QWidget:
     frame = QWidget()
-    layout = QHBoxLayout(frame)
-    layout.setContentsMargins(0, 0, 0, 0)
-    for part in parts:
-        layout.addWidget(part)
+    hbox(*parts, parent=frame)
     return frame

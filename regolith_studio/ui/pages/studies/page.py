@@ -6,8 +6,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtWidgets import QVBoxLayout
-
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.study_jobs import GalleryCell, coarsen_gallery, study_coarsening, study_of_cells
@@ -20,7 +18,7 @@ from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.loss_variants import LossVariant
 from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.layout import tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.studies.plots import CoarseningStudyPanel, LmaxStudyPanel
 from regolith_studio.ui.pages.studies.sweep import MAX_PARTICLES, GalleryPanel, LossSelector, SweepPanel
@@ -324,7 +322,4 @@ class StudiesPage(PageWidget):
 
     def _place(self) -> None:
         self.tabs = tabs("studies_tabs", list(zip(self._panels, map(tr, TABS), strict=True)))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(10, 10, 10, 8)
-        layout.addWidget(self.bar)
-        layout.addWidget(self.tabs, 1)
+        vbox(self.bar, (self.tabs, 1), parent=self, margins=(10, 10, 10, 8))

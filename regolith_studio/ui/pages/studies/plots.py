@@ -24,7 +24,7 @@ from regolith_studio.studies.sweeps import (
     format_difference,
     significant,
 )
-from regolith_studio.ui.layout import control_row, left_aligned
+from regolith_studio.ui.layout import control_row, left_aligned, named
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
@@ -190,8 +190,6 @@ class SensitivityTable(QWidget):
                 value = float(values[r, k])
                 text = localized(format_difference(value))
                 item = QTableWidgetItem(text if sure[r, k] or text == "0" else f"({text})")
-                item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
-                item.setBackground(self._ground(value / top))
                 item.setToolTip(
                     tr(
                         "{row}, {column}: {before:.3g} % becomes {after:.3g} %",
@@ -209,6 +207,8 @@ class SensitivityTable(QWidget):
                     )
                     + ("" if sure[r, k] else "\n" + tr("Not significant."))
                 )
+                item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+                item.setBackground(self._ground(value / top))
                 self.table.setItem(r, k, item)
         fit_to_font(self.table, self.width(), self._rows, 1)
 
@@ -276,9 +276,7 @@ class LmaxStudyPanel(QWidget):
         self.setObjectName("lmax_study")
         self.plot = BandPlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(LMAX_PLACEHOLDER))
         self.card = study_card("lmax_study", tr("Smallest l<sub>max</sub>"))
-        self.tolerance = DecimalField()
-        self.tolerance.setObjectName("lmax_study_tolerance")
-        self.tolerance.setAccessibleName(tr("Largest error in percent"))
+        self.tolerance = named(DecimalField(), "lmax_study_tolerance", tr("Largest error in percent"))
         self.tolerance.setRange(0.1, 100.0)
         self.tolerance.setDecimals(1)
         self.tolerance.setValue(5.0)

@@ -9,7 +9,6 @@ from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt, QTimer
 from PySide6.QtGui import QAction, QIcon, QMouseEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
-    QHBoxLayout,
     QHeaderView,
     QLabel,
     QMenu,
@@ -43,7 +42,7 @@ from regolith_studio.studies.sweeps import (
     significant,
     sufficient_facets,
 )
-from regolith_studio.ui.layout import control_row
+from regolith_studio.ui.layout import control_row, hbox, named
 from regolith_studio.ui.pages.studies.plots import (
     BandPlot,
     SensitivityTable,
@@ -85,16 +84,17 @@ class LossSelector(QWidget):
         self.rows.setToolTip(tr("Loss functions that are the rows of the studies"))
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
-        self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
+        self.box = named(ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES), tip=tr(BOX_TIP))
         self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
-        self.box.setToolTip(tr(BOX_TIP))
-        self.hint_label = ElidedLabel(role="hint")
-        self.hint_label.setObjectName("study_facets_hint")
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        for part in (QLabel(tr("Loss functions")), self.rows, QLabel(tr("Bounding box")), self.box):
-            row.addWidget(part)
-        row.addWidget(self.hint_label, 1)
+        self.hint_label = named(ElidedLabel(role="hint"), "study_facets_hint")
+        hbox(
+            QLabel(tr("Loss functions")),
+            self.rows,
+            QLabel(tr("Bounding box")),
+            self.box,
+            (self.hint_label, 1),
+            parent=self,
+        )
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
         self.set_names(PAPER_LOSSES)
 
@@ -293,8 +293,7 @@ class SweepPanel(QWidget):
         self.part = PARTS[key]()
         self.part.setAccessibleName(tr(self._variation.title))
         self.card = study_card(key, tr(CAPTIONS[key]))
-        self.take = QPushButton(self)
-        self.take.setObjectName(f"{key}_take")
+        self.take = named(QPushButton(self), f"{key}_take")
         self.take.hide()
         self._enough = 0
         self.take.clicked.connect(lambda: self.facetsChosen.emit(self._enough))
@@ -373,8 +372,7 @@ class GalleryPanel(QWidget):
         self._painting: tuple[int, Painting] | None = None
         self._timer = QTimer(self, interval=0)
         self._timer.timeout.connect(self._paint_on)
-        self.table = QTableWidget()
-        self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
+        self.table = named(QTableWidget(), spoken=tr("Polyhedra by loss function and particle"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setShowGrid(False)

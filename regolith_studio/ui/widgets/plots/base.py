@@ -12,18 +12,17 @@ from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QFontMetrics, QFontM
 from PySide6.QtWidgets import (
     QFileDialog,
     QGraphicsGridLayout,
-    QHBoxLayout,
     QLabel,
     QMenu,
     QMessageBox,
     QSizePolicy,
     QStackedLayout,
     QToolTip,
-    QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, localized, tr
 from regolith_studio.ui.widgets.labels import unbroken
@@ -289,10 +288,8 @@ class Plot(QWidget):
         self.legend = QLabel()
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.legend.setWordWrap(True)
-        self.hint_label = QLabel()
-        self.hint_label.setProperty("role", "hint")
-        self._placeholder = QLabel(placeholder)
-        self._placeholder.setProperty("role", "hint")
+        self.hint_label = named(QLabel(), role="hint")
+        self._placeholder = named(QLabel(placeholder), role="hint")
         self._placeholder.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._placeholder.setWordWrap(True)
         self._placeholder.setMargin(12)
@@ -302,18 +299,15 @@ class Plot(QWidget):
         self.set_empty(True)
 
     def _arrange(self) -> None:
-        top = QHBoxLayout()
-        top.setContentsMargins(8, 4, 8, 0)
-        top.setSpacing(16)
-        top.addWidget(self.legend, 1)
-        top.addWidget(self.hint_label)
         page = QWidget()
         self._page = page
-        column = QVBoxLayout(page)
-        column.setContentsMargins(2, 2, 8, 2)
-        column.setSpacing(0)
-        column.addLayout(top)
-        column.addWidget(self.canvas, 1)
+        vbox(
+            hbox((self.legend, 1), self.hint_label, margins=(8, 4, 8, 0), spacing=16),
+            (self.canvas, 1),
+            parent=page,
+            margins=(2, 2, 8, 2),
+            spacing=0,
+        )
         self._stack = QStackedLayout(self)
         self._stack.addWidget(self._placeholder)
         self._stack.addWidget(page)
