@@ -38,7 +38,6 @@ class Command:
 
     @property
     def title(self) -> str:
-        """As it is listed."""
         return f"{self.place}: {self.text}" if self.place else self.text
 
 
@@ -323,7 +322,6 @@ class Actions:
         return entries
 
     def set_theme(self, theme: Theme) -> None:
-        """Draw the icons in the colours of a theme."""
         for action, name in self._icons:
             action.setIcon(icon(name, theme.text, theme.muted))
 

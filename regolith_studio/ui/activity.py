@@ -61,7 +61,6 @@ class TasksPanel(QWidget):
         self._show()
 
     def value(self) -> tuple[Task, ...]:
-        """The running tasks."""
         return self._tasks
 
     def setValue(self, tasks: Sequence[Task]) -> None:
@@ -72,7 +71,6 @@ class TasksPanel(QWidget):
         self._show()
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self.stop.setIcon(icon("stop", theme.bad, theme.muted))
 
     def changeEvent(self, event: QEvent) -> None:
@@ -165,7 +163,6 @@ class TaskListPanel(QWidget):
         vbox(area, parent=self)
 
     def show_tasks(self, tasks: Sequence[Task]) -> None:
-        """List other tasks."""
         listed = {task.id for task in tasks}
         for number in [number for number in self._rows if number not in listed]:
             self._remove(number)

@@ -70,7 +70,6 @@ class WindowState:
                 splitter.restoreState(state)
 
     def keep(self, window: QMainWindow) -> None:
-        """Note down how everything stands now."""
         states = {each.objectName(): each.saveState() for each in window.findChildren(QSplitter)}
         states = {name: state for name, state in states.items() if name} | {"window": window.saveGeometry()}
         texts = {name: base64.b64encode(state.data()).decode("ascii") for name, state in states.items()}
@@ -147,7 +146,6 @@ class PreferencesDialog(GrowingDialog):
         self.font_size.valueChanged.connect(lambda percent: self.valueChanged.emit({FONT_SIZE: percent}))
 
     def value(self) -> dict[str, Any]:
-        """All of it."""
         return {
             SETTING: self.language.value(),
             "theme": self.theme.value(),
@@ -195,7 +193,6 @@ class Appearance(QObject):
         apply_font_size(cast(QApplication, QApplication.instance()))
 
     def ask(self) -> None:
-        """Show the dialog."""
         dialog = PreferencesDialog(self._preferences.window, self._window)
         dialog.valueChanged.connect(lambda changes: self.choose(**changes))
         dialog.finished.connect(dialog.deleteLater)

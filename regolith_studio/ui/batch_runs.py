@@ -53,21 +53,17 @@ class DialogRuns(QObject, Generic[Dialog]):
         self._dialog.raise_()
 
     def show_tasks(self) -> None:
-        """Tell the dialog how far the run is."""
         mine = [task for task in self._session.tasks if task.id == self._task]
         if mine and self._dialog is not None:
             self._dialog.show_task(mine[0])
 
     def make_dialog(self) -> Dialog:
-        """A new dialog."""
         raise NotImplementedError
 
     def make_job(self, request: Any) -> Job:
-        """What a request asks for."""
         raise NotImplementedError
 
     def sentence_of(self, result: Any) -> str:
-        """How the run ended."""
         raise NotImplementedError
 
     def stopped_sentence(self) -> str:

@@ -126,7 +126,6 @@ class Bindings(QObject):
             holder()
 
     def disconnect_all(self) -> None:
-        """Disconnect everything."""
         self._fast.stop()
         self._slow.stop()
         for disconnect_all in self._disconnectors:
@@ -180,12 +179,10 @@ class Throttle(QObject):
         self._timer.stop()
 
     def resume(self) -> None:
-        """Call what has become due."""
         self._paused = False
         self._wait()
 
     def stop(self) -> None:
-        """Call nothing any more."""
         self._timer.stop()
         self._due.clear()
         self._last.clear()

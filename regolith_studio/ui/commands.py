@@ -106,7 +106,6 @@ class PageHistory(QObject):
         self.changed.emit()
 
     def stop(self) -> None:
-        """Look at no page any more."""
         self._timer.stop()
 
     def note_opening(self) -> None:
@@ -144,7 +143,6 @@ class PageHistory(QObject):
             self._show(step.page, step.before)
 
     def redo(self) -> None:
-        """Take it again."""
         if self._future:
             step = self._future.pop()
             self._past.append(step)
@@ -221,7 +219,6 @@ class Commands(QObject):
         self.open_paths([Path(name) for name in names])
 
     def open_folder(self) -> None:
-        """Ask for a folder and open every mesh in it."""
         name = QFileDialog.getExistingDirectory(self._window, tr("Open a folder of meshes"), self._folder())
         self.open_paths([Path(name)] if name else [])
 
@@ -414,11 +411,9 @@ class Commands(QObject):
             self._try(lambda: self._session.open_recipe(recipe, Path.cwd(), keep_selected=True))
 
     def start_study(self, kind: Kind) -> None:
-        """Run a study over all open particles."""
         self._try(lambda: self._session.start_study(kind))
 
     def stop(self, task_id: int) -> None:
-        """Stop one task."""
         self._session.cancel(task_id)
 
     def _open_recipe(self, path: Path) -> int | None:

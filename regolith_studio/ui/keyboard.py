@@ -244,7 +244,6 @@ class Shortcuts:
         self._keep()
 
     def reset(self) -> None:
-        """Give every command its usual keys."""
         for name, keys in self.defaults.items():
             self._set(name, keys)
         self._keep()
@@ -269,7 +268,6 @@ class Shortcuts:
 
 
 def shown_keys(keys: QKeySequence) -> str:
-    """Keys as the keyboard of the user names them."""
     return keys.toString(QKeySequence.SequenceFormat.NativeText)
 
 

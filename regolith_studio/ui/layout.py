@@ -110,7 +110,6 @@ class Collapsible(QWidget):
         self.set_open(False)
 
     def set_open(self, is_open: bool) -> None:
-        """Expand or collapse."""
         self.button.setChecked(is_open)
         self.button.setArrowType(Qt.ArrowType.DownArrow if is_open else Qt.ArrowType.RightArrow)
         self.content.setVisible(is_open)
@@ -174,7 +173,6 @@ def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -
 
 
 def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
-    """Parts in a column with movable borders."""
     made = splitter(Qt.Orientation.Vertical, parts, sizes)
     made.setStretchFactor(stretch, 1)
     return made
@@ -189,7 +187,6 @@ def equal_parts(direction: Qt.Orientation, parts: Sequence[QWidget]) -> QSplitte
 
 
 def tabs(name: str, pages: Sequence[tuple[QWidget, str]]) -> QTabWidget:
-    """Pages of which one is seen."""
     made = QTabWidget()
     made.setObjectName(name)
     made.setMinimumHeight(120)
@@ -256,7 +253,6 @@ class _Column(QScrollArea):
 
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:
-    """A part with room around it."""
     frame = QWidget()
     layout = QVBoxLayout(frame)
     layout.setContentsMargins(left, top, right, bottom)

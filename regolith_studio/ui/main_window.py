@@ -72,7 +72,6 @@ class MainWindow(QMainWindow):
 
     @property
     def page(self) -> PageWidget:
-        """The page that is seen."""
         return self.pages.widgets[self.pages.current]
 
     def go(self, key: str) -> PageWidget:
@@ -80,7 +79,6 @@ class MainWindow(QMainWindow):
         return self.pages.go(key if key in self.pages.pages else next(iter(self.pages.pages)))
 
     def show_tour(self) -> None:
-        """Begin the guided tour."""
         self.pages.changed.connect(start_tour(self, self.go, self.preferences).follow)
 
     def _context(self, key: str) -> PageContext:
@@ -102,7 +100,9 @@ class MainWindow(QMainWindow):
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
             "repair": lambda repair: self.session.choose(repair=repair),
-            "palette": self._open_palette,
+            "palette": lambda: CommandPalette(
+                self.menus.palette(self.pages.pages, self.pages.run), self
+            ).open(),
             "preferences": self.appearance.ask,
             "standard_layout": partial(self.window_state.restore_standard, self),
             "tour": self.show_tour,
@@ -139,9 +139,6 @@ class MainWindow(QMainWindow):
         self.commands.stepped.connect(lambda: self.go("explore"))
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)
         self.menus.recent.aboutToShow.connect(self._list_recent)
-
-    def _open_palette(self) -> None:
-        CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
 
     def _show_choices(self) -> None:
         titles = {key: page.title for key, page in self.pages.pages.items()}

@@ -3,7 +3,6 @@
 import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -255,13 +254,12 @@ class Sidebar(QFrame):
             self.buttons[key].setFocus(Qt.FocusReason.OtherFocusReason)
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         for key, page in self._pages.items():
             self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
 
     def _button(self, page: Page, number: int) -> QToolButton:
         button = QToolButton()
-        button.clicked.connect(partial(self._clicked, page.key))
+        button.clicked.connect(lambda: self.chosen.emit(page.key))
         button.setObjectName(f"page_{page.key}")
         button.setText(tr(page.title))
         button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
@@ -272,9 +270,6 @@ class Sidebar(QFrame):
         button.setAutoRaise(True)
         button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         return button
-
-    def _clicked(self, key: str) -> None:
-        self.chosen.emit(key)
 
 
 MIN_SIZE = QSize(240, 160)
@@ -319,11 +314,10 @@ class PageStack(QWidget):
         self.sidebar = scrolled(self._bar, whole_width=True)
         self.buttons = self._bar.buttons
         self._bar.chosen.connect(self.go)
-        self._arrange()
+        hbox(self.sidebar, (self._stack, 1), parent=self, spacing=0)
 
     @property
     def current(self) -> str:
-        """Key of the page that is seen."""
         return self._current
 
     def go(self, key: str) -> PageWidget:
@@ -343,7 +337,6 @@ class PageStack(QWidget):
         return widget
 
     def open_in(self, key: str, path: Path) -> None:
-        """Show a page and open a file there."""
         self.go(key).open_path(path)
 
     def neighbour(self, step: int) -> None:
@@ -405,6 +398,3 @@ class PageStack(QWidget):
         if self._current:
             self._contexts[self._current].bindings.pause()
             self.widgets[self._current].on_hide()
-
-    def _arrange(self) -> None:
-        hbox(self.sidebar, (self._stack, 1), parent=self, spacing=0)

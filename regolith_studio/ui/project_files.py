@@ -130,7 +130,6 @@ class ProjectFiles(QObject):
         return self.path is not None and self._saved is not None and self._state() != self._saved
 
     def title(self) -> str:
-        """Of the window."""
         if self.path is None:
             return "Regolith Studio"
         return f"{self.path.stem}{' *' if self.modified else ''} – Regolith Studio"
@@ -165,7 +164,6 @@ class ProjectFiles(QObject):
         return (_digest(self.path) in ("", self._digest) or self._agreed(question)) and self._write(self.path)
 
     def save_as(self) -> bool:
-        """Ask for a file and write the project into it."""
         start = str(self.path or Path.home() / f"project{SUFFIX}")
         name, _ = QFileDialog.getSaveFileName(self._window, tr("Save project"), start, tr(FILTER))
         if not name:
@@ -178,7 +176,6 @@ class ProjectFiles(QObject):
         return (not path.exists() or self._agreed(question)) and self._write(path)
 
     def open(self, path: Path) -> None:
-        """Bring a project back."""
         digest = _digest(path)
         if self._bring_back(path):
             self.path, self._digest = path, digest

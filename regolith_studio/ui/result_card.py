@@ -170,7 +170,6 @@ class ResultView(QFrame):
 
     @property
     def record(self) -> ResultRecord:
-        """What is shown."""
         return self._record
 
     def show_record(self, record: ResultRecord) -> None:
@@ -217,7 +216,6 @@ class ResultView(QFrame):
         self._name_button()
 
     def add(self, part: QWidget) -> None:
-        """Put a button at the end."""
         self._ends.append(part)
         self._row.addWidget(part)
 
@@ -352,7 +350,6 @@ class RunController:
         )
 
     def stop(self) -> None:
-        """Stop the job."""
         self._context.session.cancel(self._task)
         self._follow()
 

@@ -303,7 +303,6 @@ class MainThreadInvoker(QObject):
             self._posted.emit(call)
 
     def close(self) -> None:
-        """Run nothing any more."""
         self._open = False
 
     def _run(self, call: Call) -> None:

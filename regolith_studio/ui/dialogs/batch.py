@@ -63,7 +63,6 @@ class PathField(QWidget):
         return Path(text).expanduser() if text else None
 
     def setValue(self, path: Path | None) -> None:
-        """Show another path."""
         self.text.setText("" if path is None else str(path))
 
     def _ask(self) -> None:
@@ -151,7 +150,6 @@ class WorkersField(QWidget):
         self._changed()
 
     def value(self) -> ExecutorSettings:
-        """Who shall work."""
         executor = self.executor.currentData()
         if executor == "processes":
             return ExecutorSettings("processes", self.count.value())
@@ -171,7 +169,6 @@ class WorkersField(QWidget):
         return {"place": str(self.executor.currentData()), "address": self.address.text(), "tls": tls}
 
     def restore_fields(self, values: Mapping[str, Any]) -> None:
-        """Suggest what was given before."""
         self.executor.setCurrentIndex(max(0, self.executor.findData(values.get("place"))))
         self.address.setText(str(values.get("address", "")))
         self.tls.text.setText(str(values.get("tls", "")))
@@ -226,7 +223,6 @@ class RunDialog(GrowingDialog):
         self.box.rejected.connect(self.close)
 
     def value(self) -> Any:
-        """The request."""
         raise NotImplementedError
 
     def field_values(self) -> dict[str, Any]:
@@ -238,7 +234,6 @@ class RunDialog(GrowingDialog):
         raise NotImplementedError
 
     def show_task(self, task: Task) -> None:
-        """Show how far the work is."""
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
         count = tr("{at:,} of {total:,}", at=task.done, total=task.total) if task.total else ""
@@ -357,7 +352,6 @@ class BatchDialog(RunDialog):
         self.evaluate()
 
     def value(self) -> BatchRequest:
-        """The request."""
         folder = self.folder.value()
         if folder is None or folder.is_file():
             raise InputError(tr("Enter a folder for the results."))

@@ -158,17 +158,14 @@ class UnitDialog(GrowingDialog):
         self._open.setEnabled(True)
 
     def value(self) -> str:
-        """The unit."""
         key = str(self.unit.currentData())
         return f"voxel:{self.voxel.value():g}" if key == "voxel" else key
 
     def table_convention(self) -> TableConvention:
-        """The convention of tables of coefficients."""
         convention: TableConvention = self.convention.currentData()
         return convention
 
     def setValue(self, unit: str) -> None:
-        """Suggest a unit."""
         key, _, size = unit.partition(":")
         self.unit.setCurrentIndex(max(0, self.unit.findData(key)))
         if size:

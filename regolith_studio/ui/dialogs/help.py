@@ -68,7 +68,6 @@ class GuideBrowser(QTextBrowser):
         self.setOpenExternalLinks(True)
 
     def show_chapter(self, name: str) -> None:
-        """Show a chapter by the name of its file."""
         address = QUrl.fromLocalFile(str(guide_folder() / f"{name}.md"))
         self.setSource(address, QTextDocument.ResourceType.MarkdownResource)
 
@@ -158,7 +157,6 @@ class CitationLinks(QObject):
 
     @Slot(QUrl)
     def open(self, _address: QUrl) -> None:
-        """Show the citation."""
         self._show()
 
 

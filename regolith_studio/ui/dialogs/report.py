@@ -65,7 +65,6 @@ class ReportDialog(RunDialog):
         self.evaluate()
 
     def value(self) -> ReportRequest:
-        """The request."""
         if not self._count:
             raise InputError(tr("No particle is open to report on: open one first."))
         folder = self.folder.value()
@@ -87,7 +86,6 @@ class ReportDialog(RunDialog):
         self.evaluate()
 
     def show_partial(self, value: object) -> None:
-        """Say which section is made."""
         if isinstance(value, SectionBegun):
             place = tr("Section {number} of {total}", number=value.number, total=value.total)
             self.section.setText(f"{place}: {tr(value.title)}")

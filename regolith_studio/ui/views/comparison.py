@@ -39,11 +39,9 @@ class DividerHandle:
         self._divider, self._moved = divider, moved
 
     def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:  # noqa: ARG002
-        """Whether the line is under the mouse."""
         return self._divider.shown and abs(x - self._divider.share * sight.width) <= REACH
 
     def pull(self, sight: Projection, right: float, down: float) -> None:  # noqa: ARG002
-        """Follow the mouse."""
         share = self._divider.share + right / max(sight.width, 1.0)
         self._moved(min(max(share, EDGE), 1.0 - EDGE))
 
@@ -65,7 +63,6 @@ class PlaneGrip:
         self._plane, self._moved = plane, moved
 
     def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:
-        """Whether the frame is under the mouse."""
         known = self._plane()
         if known is None:
             return False
@@ -74,7 +71,6 @@ class PlaneGrip:
         return _distance(np.array([x, y]), corners, following) <= REACH
 
     def pull(self, sight: Projection, right: float, down: float) -> None:
-        """Follow the mouse along the normal."""
         known = self._plane()
         if known is not None:
             self._moved(known[0].offset + sight.along(known[0].normal, right, down))
@@ -116,7 +112,6 @@ class Sections(QObject):
         self.changed.emit()
 
     def set_shapes(self, shapes: Mapping[str, SceneShape]) -> None:
-        """Cut other bodies from now on."""
         self._shapes = dict(shapes)
         if self.shown:
             self.changed.emit()
@@ -133,7 +128,6 @@ class Sections(QObject):
         self.changed.emit()
 
     def set_flipped(self, flipped: bool) -> None:
-        """Show the other half."""
         self.flipped = flipped
         self.changed.emit()
 
@@ -216,7 +210,6 @@ COMPARE = {
 
 
 def partners_of(name: str) -> dict[str, str]:
-    """What a body can be compared with."""
     return {"": N_("alone")} | {other: WITH[other] for other in NAMES if other != name}
 
 
@@ -271,7 +264,6 @@ class Comparison:
             self._frames[name].view.draw(lambda _plotter: None)
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         for divider in self.dividers.values():
             divider.set_ink(theme.surroundings)
@@ -302,7 +294,6 @@ class Comparison:
                 divider.set_shown(True)
 
     def release(self) -> None:
-        """Stop listening to the views."""
         for divider in self.dividers.values():
             divider.remove()
         self.dividers.clear()

@@ -57,7 +57,6 @@ class FacetHover:
         view.mouse.left.append(self.clear)
 
     def clear(self) -> None:
-        """Highlight no facet."""
         if self._shown is not None:
             self._shown = None
             self._view.draw(lambda plotter: facets.show_facet(plotter, None))
@@ -269,7 +268,6 @@ class ThreeViews(QSplitter):
         self.link.frame(mesh.vertices)
 
     def show_fit(self, mesh: Mesh | None, l_max: int) -> None:
-        """Show the surface of the fit."""
         if mesh is None or PARTICLE not in self._shapes:
             return
         self._shapes[FIT] = SceneShape(FIT, mesh)
@@ -347,12 +345,10 @@ class ThreeViews(QSplitter):
         self._draw_extras(PARTICLE, FIT)
 
     def set_wireframe(self, wireframe: bool) -> None:
-        """Draw particle and fit as triangle meshes."""
         for name in NAMES:
             self.views[name].draw(lambda plotter: surfaces.set_wireframe(plotter, wireframe))
 
     def reset_cameras(self) -> None:
-        """Show the particle whole again."""
         mesh = self._surface(PARTICLE)
         if mesh is not None:
             self.link.frame(mesh.vertices)
@@ -392,7 +388,6 @@ class ThreeViews(QSplitter):
             return snapshot(frames, self._theme, scale, transparent, lines)
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         if self._heat:
             self._draw_fit()
@@ -401,7 +396,6 @@ class ThreeViews(QSplitter):
         self.comparison.set_theme(theme)
 
     def release(self) -> None:
-        """Give the graphics memory back."""
         self.comparison.release()
         for view in self.views.values():
             view.release()
@@ -473,7 +467,6 @@ class ThreeViews(QSplitter):
 
 
 def _lengths(bounds: FloatArray) -> str:
-    """Size of the box along the axes."""
     return " × ".join(number_text(edge, ".3g") for edge in bounds[1] - bounds[0]) + " µm"
 
 

@@ -53,9 +53,7 @@ class DragHandle(Protocol):
 
     cursor: Qt.CursorShape
 
-    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:
-        """Whether it is under the mouse."""
-        ...
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool: ...
 
     def pull(self, sight: Projection, right: float, down: float) -> None:
         """Follow the mouse by so many pixels."""
@@ -91,7 +89,6 @@ class CameraMouse:
         event.accept()
 
     def release(self, event: QMouseEvent) -> None:
-        """The drag has ended."""
         self._last = self._held = None
         event.accept()
 
@@ -114,7 +111,6 @@ class CameraMouse:
         event.accept()
 
     def wheel(self, event: QWheelEvent) -> None:
-        """Zoom about the middle of the picture."""
         notches = event.angleDelta().y() / 120.0
         if notches:
             self._move(zoomed(self._pose(), WHEEL_ZOOM**notches))
@@ -180,14 +176,10 @@ class SceneView(Protocol):
     """One view. ``draw`` schedules a repaint; calls are coalesced."""
 
     @property
-    def widget(self) -> QWidget:
-        """What is placed in the window."""
-        ...
+    def widget(self) -> QWidget: ...
 
     @property
-    def pose(self) -> CameraPose:
-        """Where the camera stands."""
-        ...
+    def pose(self) -> CameraPose: ...
 
     def draw(self, fill: Callable[[Any], None]) -> None:
         """Let `fill` change what the plotter shows, and ask for a new picture."""
@@ -270,7 +262,6 @@ class CameraLink:
 
     @property
     def linked(self) -> bool:
-        """Whether the cameras move together."""
         return self._linked
 
     def set_linked(self, linked: bool) -> None:
@@ -362,7 +353,6 @@ class ViewFrame(QFrame):
         self.setProperty(FOCUSED, False)
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self.view.set_surroundings(theme.surroundings)
         if self._colour:
             self._mark.setText(f'<span style="color:{getattr(theme, self._colour)}">&#9632;</span>')
@@ -381,7 +371,6 @@ class ViewFrame(QFrame):
         return self._titles[0]
 
     def set_detail(self, detail: str) -> None:
-        """Another quiet line."""
         self._detail = detail
         self.detail.setText(detail)
 

@@ -45,7 +45,6 @@ class ElidedComboBox(QComboBox):
         self.setMinimumContentsLength(12)
 
     def whole_width(self) -> int:
-        """Width at which no label is elided."""
         labels = (self.itemText(row) for row in range(self.count()))
         widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
         return widest + self.width() - text_room(self)
@@ -77,7 +76,6 @@ class ChoiceBox(ElidedComboBox):
             self.addItem(words[:1].upper() + words[1:], key)
 
     def value(self) -> str:
-        """The selected key."""
         key: str = self.currentData()
         return key
 
@@ -179,12 +177,10 @@ class NumberSpec:
 
     @property
     def whole(self) -> bool:
-        """Whether the number is an integer."""
         return float(self.step).is_integer()
 
     @property
     def decimals(self) -> int:
-        """Decimals of the step."""
         return 0 if self.whole else len(f"{self.step:.6f}".rstrip("0").split(".")[1])
 
 
@@ -223,7 +219,6 @@ class NumberSlider(QWidget):
         self.setValue(spec.minimum)
 
     def value(self) -> float | int:
-        """The number."""
         return self.field.value()
 
     def setValue(self, value: float) -> None:

@@ -240,7 +240,6 @@ def prepare(lines: tuple[str, ...]) -> bool:
 
 
 def all_outlines() -> bool:
-    """Whether every formula shows its latest lines."""
     return _outline_maker().idle
 
 

@@ -108,7 +108,6 @@ class HeatTable(QWidget):
             self._fit_to_font()
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self._fill()
 
@@ -210,7 +209,6 @@ def _lines_of_names(table: QTableWidget, width: int) -> int:
 
 
 def centred_hint(text: str) -> QLabel:
-    """A centred placeholder text."""
     label = named(QLabel(text), role="hint")
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)
     label.setWordWrap(True)

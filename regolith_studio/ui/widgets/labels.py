@@ -60,7 +60,6 @@ class CitingLabel(QLabel):
         self.setText(text)
 
     def setText(self, text: str) -> None:
-        """Show another text."""
         linked = with_citations(text)
         super().setText(linked)
         flag = Qt.TextInteractionFlag
@@ -83,7 +82,6 @@ class CitingLabel(QLabel):
 
 
 def heading(text: str) -> QLabel:
-    """The heading of a group of controls."""
     return named(CitingLabel(text), role="heading")
 
 
@@ -176,7 +174,6 @@ class WrappedLabel(QLabel):
         self.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
 
     def setText(self, text: str) -> None:
-        """Show another text."""
         super().setText(inert(text))
 
     def minimumSizeHint(self) -> QSize:
@@ -209,11 +206,9 @@ class ElidedLabel(QWidget):
         self.setText(text)
 
     def text(self) -> str:
-        """The whole text."""
         return self._text
 
     def setText(self, text: str) -> None:
-        """Show another text."""
         if text != self._text:
             self._text = text
             self.setToolTip(inert(text))
@@ -228,7 +223,6 @@ class ElidedLabel(QWidget):
         return QSize(20, self.fontMetrics().height() + 2)
 
     def shown_text(self) -> str:
-        """What there is room for."""
         return self.fontMetrics().elidedText(self._text, self._elide, self.width())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002

@@ -78,7 +78,6 @@ class PresetBar(QWidget):
         return str(self.box.currentData() or "")
 
     def set_entries(self, entries: Sequence[PresetEntry]) -> None:
-        """List other presets."""
         if tuple(entries) == self._entries:
             return
         self._entries = tuple(entries)
@@ -106,7 +105,6 @@ class PresetBar(QWidget):
             self._make_room()
 
     def _make_room(self) -> None:
-        """Limit the button to the width of its text."""
         self.reset.setMaximumWidth(self.reset.fontMetrics().horizontalAdvance(self.reset.text()) + 16)
 
     def ask_name(self) -> None:
@@ -166,7 +164,6 @@ class PresetForm(ParameterForm):
         return self.changes() != self._known[self._chosen]
 
     def save_as(self, name: str) -> None:
-        """Save the present values as an own preset."""
         self._own.save(name, self.changes())
         self._list()
         self._chosen = f"own:{name}"
@@ -194,7 +191,6 @@ class PresetForm(ParameterForm):
         self._show_mark()
 
     def _fits(self, values: Mapping[str, Any]) -> bool:
-        """Whether every value is known and valid."""
         try:
             self._kind(**{name: float(value) for name, value in values.items()})
         except (InputError, TypeError, ValueError):

@@ -172,11 +172,9 @@ class ParticleTableModel(QAbstractTableModel):
         self._keeps: Callable[[ParticleEntry], bool] | None = None
 
     def column(self, key: str) -> int:
-        """Number of the column of this key."""
         return [each.key for each in self.columns].index(key)
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         colours = {
             "sound": theme.good,
             "doubtful": theme.doubtful,
@@ -297,7 +295,6 @@ class FontRowHeight(QObject):
         self._fit()
 
     def set_lines(self, lines: int) -> None:
-        """Set the number of text lines in each row."""
         self._lines = lines
         self._fit()
 
@@ -354,7 +351,6 @@ class ParticleTable(QTableView):
         self.selectionModel().currentRowChanged.connect(lambda index, _old: self._announce_current(index))
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self.particles.set_theme(theme)
         self.viewport().update()
 
@@ -451,7 +447,6 @@ class TextTable(QTableView):
         self.selectionModel().selectionChanged.connect(self._announce)
 
     def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str]) -> None:
-        """Show other rows with their tool tips."""
         with QSignalBlocker(self.selectionModel()):
             self.rows.setRowCount(0)
             for texts, tip in zip(rows, tips, strict=True):
@@ -464,7 +459,6 @@ class TextTable(QTableView):
         self.resizeColumnsToContents()
 
     def selected(self) -> int | None:
-        """Number of the selected row."""
         rows = self.selectionModel().selectedRows()
         return rows[0].row() if rows else None
 
@@ -478,7 +472,6 @@ class TextTable(QTableView):
         self.viewport().update()
 
     def text(self, row: int, column: int) -> str:
-        """Text of a cell."""
         return self.rows.item(row, column).text()
 
     def showEvent(self, event: QShowEvent) -> None:

@@ -55,15 +55,12 @@ class Toast(QFrame):
         self.hide()
 
     def note(self, sentence: str, details: str = "") -> None:
-        """Show a note."""
         self._show_message("note", sentence, details, NOTE_SECONDS)
 
     def notes(self, sentences: Sequence[str]) -> None:
-        """Show several notes as one."""
         self.note("\n".join(map(translate, sentences)))
 
     def problem(self, sentence: str, details: str = "") -> None:
-        """Show an error."""
         self._show_message("problem", translate(sentence), details, PROBLEM_SECONDS)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:

@@ -108,7 +108,6 @@ class RepresentativesPanel(QWidget):
         return not self.which.currentData()
 
     def request(self) -> RepresentativesRequest:
-        """The requested number and weighting."""
         return RepresentativesRequest(int(self.count.value()), self.weighting.currentData())
 
     def recipe_part(self, sizes: str, name: str) -> Representatives:
@@ -216,7 +215,6 @@ class SizesPanel(QWidget):
         return found
 
     def show_problem(self, sentence: str) -> None:
-        """Show why the numbers are invalid."""
         self.problem.setText(sentence)
         self.problem.setVisible(bool(sentence))
 
@@ -267,7 +265,6 @@ class FolderPanel(QWidget):
         return file_stem("_".join(self.name.text().split()) or "dataset")
 
     def show_dataset(self, words: str) -> None:
-        """Describe the current dataset."""
         self.state.setText(words or tr("No dataset yet."))
 
 
@@ -281,7 +278,6 @@ class DatasetControls:
     targets: ExportPanel
 
     def show_recipe(self, opened: DatasetRequest) -> None:
-        """Show the values of a recipe."""
         if recipe := opened.representatives:
             self.representatives.setValue(recipe.model_dump())
             self.sizes.set_text(recipe.sizes)
@@ -290,7 +286,6 @@ class DatasetControls:
             self.targets.show_recipe(opened.exports)
 
     def request(self) -> DatasetRequest:
-        """The values as a recipe holds them."""
         name = self.folder.name.text().strip()
         return DatasetRequest(
             self.representatives.recipe_part(self.sizes.text(), name), self.targets.recipe_part()
@@ -338,7 +333,6 @@ class LibraryPanel(QWidget):
         return self._entries
 
     def ask(self) -> None:
-        """Ask for the folder of the library."""
         before = str(self._context.recall("library", str(Path.home())))
         name = QFileDialog.getExistingDirectory(self, tr("The folder of your datasets"), before)
         if name:
@@ -350,7 +344,6 @@ class LibraryPanel(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """List the folder again."""
         root = self._context.recall("library")
         if root and Path(root).is_dir():
             self.place.setText(str(root))
@@ -371,13 +364,11 @@ class LibraryPanel(QWidget):
         return self._context.session.runs_folder or usual
 
     def selected(self) -> CatalogEntry | None:
-        """The entry of the selected row."""
         item = self.tree.currentItem()
         entry = item.data(0, ROLE) if item is not None else None
         return entry if isinstance(entry, CatalogEntry) else None
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self._pictures.clear()
         self._show()

@@ -133,11 +133,9 @@ class ExportPanel(QWidget):
         self.optionsChanged.emit()
 
     def chosen(self) -> tuple[str, ...]:
-        """Keys of the selected formats."""
         return tuple(key for key, box in self.boxes.items() if box.isChecked())
 
     def options(self) -> ExportOptions:
-        """Options of the exporters."""
         return ExportOptions(
             coarse_graining_factor=float(self.coarse_graining.value()),
             n_particles=int(self.particles.value()),
@@ -195,7 +193,6 @@ class ExportPanel(QWidget):
         self._show()
 
     def show_recipe(self, recipe: Exports) -> None:
-        """Show the values of a recipe."""
         every = tuple(EXPORTERS) if "all" in recipe.targets else recipe.targets
         chosen = {
             "targets": every,
@@ -270,7 +267,6 @@ def _filling_text(label: str, found: CylinderFilling) -> str:
 
 
 def _column(parts: Sequence[QWidget]) -> QWidget:
-    """Forms below each other."""
     column = QWidget()
     layout = QVBoxLayout(column)
     layout.setContentsMargins(0, 0, 0, 0)
@@ -339,11 +335,9 @@ class ExportsList(QWidget):
 
     @property
     def exports(self) -> tuple[ExportResult, ...]:
-        """The listed exports."""
         return self._exports
 
     def show_exports(self, exports: Sequence[ExportResult]) -> None:
-        """List other exports."""
         self._exports = tuple(exports)
         while (item := self._rows.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:

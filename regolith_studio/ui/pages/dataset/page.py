@@ -240,19 +240,16 @@ class DatasetPage(PageWidget):
         )
 
     def _show_failure(self, failure: Failed) -> None:
-        """Keep on the card why nothing was written."""
         self._show_result()
         self.result.show_record(replace(self.result.record, state=ResultState.FAILED, note=failure.sentence))
         self._context.toast.problem(failure.sentence, failure.details)
 
     def open_dataset(self) -> None:
-        """Ask for a dataset folder and show it."""
         name = QFileDialog.getExistingDirectory(self, tr("Open a dataset"), self._place_before())
         if name:
             self.open_folder(Path(name))
 
     def open_folder(self, folder: Path) -> None:
-        """Show the dataset of a folder."""
         self._context.start(
             tr("Reading the dataset"), Job(open_dataset_folder, (folder,)), self._take_read, queue=BUILD
         )
@@ -271,7 +268,6 @@ class DatasetPage(PageWidget):
         self._shapes.setCurrentWidget(self.gallery)
 
     def validate(self) -> None:
-        """Validate every file of the dataset."""
         if self._folder is None:
             self._context.toast.problem(tr("There is no dataset to check: build or open one first."))
             return
@@ -440,10 +436,6 @@ class DatasetPage(PageWidget):
         if exports is not None:
             self.export_to(exports)
 
-    def _refresh_library(self) -> None:
-        if self.library.entries:
-            self.library.refresh()
-
     def _take_read(self, answer: tuple[Path, Dataset]) -> None:
         self._take_dataset(*answer)
 
@@ -518,7 +510,8 @@ class DatasetPage(PageWidget):
         self._context.toast.note(
             tr("{formats} written to {folder}.", formats=", ".join(labels), folder=done[0].folder.parent)
         )
-        self._refresh_library()
+        if self.library.entries:
+            self.library.refresh()
 
     # --- parts ---------------------------------------------------------------------------------
 

@@ -70,7 +70,6 @@ class RepresentativesGallery(QWidget):
         return self._shown
 
     def show_shapes(self, title: str, shown: Sequence[GalleryItem]) -> None:
-        """Show other items."""
         self.title.setText(title)
         self.title.setVisible(bool(title))
         self._shown = tuple(shown)
@@ -86,12 +85,10 @@ class RepresentativesGallery(QWidget):
         self._redraw()
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self._redraw()
 
     def release(self) -> None:
-        """Stop drawing."""
         self._timer.stop()
         self._painting = None
 
@@ -146,11 +143,9 @@ class QualityPlot(CurvePlot):
 
     @property
     def points(self) -> tuple[QualityPoint, ...]:
-        """The data that are drawn."""
         return self._points
 
     def show_points(self, points: Sequence[QualityPoint]) -> None:
-        """Draw the points that are computed so far."""
         self._points, self._noise = tuple(points), None
         self._draw()
 
@@ -212,7 +207,6 @@ class SizesPlot(CurvePlot):
 
     @property
     def classes(self) -> tuple[ShapeClass, ...]:
-        """The data that are drawn."""
         return self._classes
 
     def show_classes(self, classes: Sequence[ShapeClass]) -> None:
@@ -247,7 +241,6 @@ class SizesPlot(CurvePlot):
 
 
 def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[GalleryItem]:
-    """Gallery items of the representatives."""
     classes = chosen.representatives.classes
     total = sum(one.weight for one in classes)
     shown = []
@@ -266,7 +259,6 @@ def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> 
 
 
 def shapes(dataset: Dataset) -> list[GalleryItem]:
-    """Gallery items of the polyhedra of a dataset."""
     shown = []
     for one, weight in zip(dataset.representatives, dataset.weights, strict=True):
         solid = one.shape

@@ -81,7 +81,6 @@ class CoarseningPanel(QWidget):
         self.show_search(running=False)
 
     def value(self) -> dict[str, Any]:
-        """The edited choices."""
         form = self._forms.get(self.method.value())
         settings = tuple(sorted(form.value().items())) if form else ()
         return self._form.values() | self._sizes.values() | {"settings": settings}
@@ -134,7 +133,6 @@ class CoarseningPanel(QWidget):
         self.finding.setVisible(bool(words) and self.stop_at.value() == "facets")
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self.dice.setIcon(icon("dice", theme.text, theme.muted))
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -70,16 +70,13 @@ class ParticleListPanel(QWidget):
         vbox(self.title, (self.table, 1), self.hint, parent=self)
 
     def value(self) -> dict[str, str]:
-        """The id of the current particle."""
         return {"selected": self._selected}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Set the current particle."""
         self._selected = value["selected"]
         self._mark()
 
     def entries(self) -> tuple[ParticleEntry, ...]:
-        """The listed particles."""
         return self.table.particles.entries
 
     def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
@@ -134,7 +131,6 @@ class RunReplay(QObject):
 
     @property
     def playing(self) -> bool:
-        """Whether steps are still to be shown."""
         return self._timer.isActive()
 
     def follow(self, results: Results, method: str) -> None:
@@ -151,7 +147,6 @@ class RunReplay(QObject):
             self._show_next()
 
     def stop(self) -> None:
-        """Forget the steps that have not been shown."""
         self._waiting.clear()
         self._last = None
         self._timer.stop()
@@ -189,7 +184,6 @@ class FacetSearch(QObject):
         context.bindings.refresh("choices particles coarsening tasks", self._show)
 
     def start(self) -> None:
-        """Start the search with the present choices."""
         particle, choices = self._session.selected, self._session.choices
         if particle is None:
             self._context.toast.problem(tr("No particle is open; open a mesh first."))
@@ -215,7 +209,7 @@ class FacetSearch(QObject):
         """Show the answer while it belongs to the present choices."""
         choices, results = self._session.choices, self._session.results
         running = any(task.queue == f"{self._context.key}:{QUEUE}" for task in self._session.tasks)
-        if self._found is not None and not _differ_in_facets_only(self._found[0], choices):
+        if self._found is not None and replace(self._found[0], n_facets=choices.n_facets) != choices:
             self._found = None
         if self._found is not None:
             _, enough, saturated = self._found
@@ -228,10 +222,6 @@ class FacetSearch(QObject):
             self._panel.show_sufficient(count, saturated=True, now=choices.facet_count, reason=why)
         else:
             self._panel.show_search(running=running)
-
-
-def _differ_in_facets_only(one: Choices, other: Choices) -> bool:
-    return replace(one, n_facets=other.n_facets) == other
 
 
 LIST_WIDTH, CONTROLS_WIDTH = 300, 330
@@ -286,7 +276,7 @@ class ExplorePage(PageWidget):
             "overlay": lambda on: views.comparison.set_mode(overlay=on),
             "wipe": lambda on: views.comparison.set_mode(wipe=on),
             "section": self._set_section,
-            "list": self._show_list,
+            "list": self._list.setVisible,
             "change_unit": lambda: self._commands.change_unit(self._session.choices.selected),
             "enlarge": views.enlarge_next,
             "save_picture": self.pictures.save_picture,
@@ -314,9 +304,6 @@ class ExplorePage(PageWidget):
         columns.setObjectName("explore_columns")
         hbox(columns, parent=self)
 
-    def _show_list(self, shown: bool) -> None:
-        self._list.setVisible(shown)
-
     def _wire(self, context: PageContext) -> None:
         session, bindings = context.session, context.bindings
         for panel in (self.particles, self.fit, self.coarsening, self.loss):
@@ -325,7 +312,11 @@ class ExplorePage(PageWidget):
         bindings.refresh(
             "particles choices", lambda: self.three_views.show_particle(session.selected), PARTICLE_CHOICES
         )
-        bindings.refresh("choices", self._show_locks, ("method",))
+        bindings.refresh(
+            "choices",
+            lambda: self.loss.set_keeps_terms(METHODS[session.choices.method].keeps_terms),
+            ("method",),
+        )
         bindings.refresh("fit", self._show_star_point)
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
         bindings.refresh("descriptors", self._check_fit, slow=True)
@@ -339,9 +330,6 @@ class ExplorePage(PageWidget):
         )
         self.particles.unitRequested.connect(context.commands.change_unit)
         self.plots.wire(session, bindings)
-
-    def _show_locks(self) -> None:
-        self.loss.set_keeps_terms(METHODS[self._session.choices.method].keeps_terms)
 
     def _list_particles(self) -> None:
         """Fill the list; it has the focus after others were opened, so that arrows choose among them."""

@@ -68,11 +68,9 @@ class FitPanel(QWidget):
             form.editingFinished.connect(self.editingFinished)
 
     def value(self) -> dict[str, Any]:
-        """The edited choices."""
         return self._degree.values() | self._ways.values()
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other choices."""
         self._degree.setValue(value)
         self._ways.setValue(value)
 
@@ -167,7 +165,6 @@ class LossPanel(QWidget):
         self._show_mark()
 
     def value(self) -> dict[str, Any]:
-        """Weights and preset."""
         weights = LossWeights.of(**{key: float(each.value()) for key, each in self.sliders.items()})
         return {"weights": weights.keeping(self._keep), "preset": self._preset}
 
@@ -192,7 +189,6 @@ class LossPanel(QWidget):
         return bool(self.value()["weights"] != self._known[self._chosen].weights)
 
     def save_as(self, name: str) -> None:
-        """Save the present weights as an own preset."""
         now = self.value()
         self._own.save(name, {"preset": now["preset"], "weights": dict(now["weights"])})
         self._list()
@@ -212,7 +208,6 @@ class LossPanel(QWidget):
             align_labels(self.sliders.values())
 
     def _list(self) -> None:
-        """Read and list shipped and own presets."""
         found = dict(presets())
         for name, values in self._own.all().items():
             try:

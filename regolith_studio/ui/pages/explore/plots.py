@@ -73,7 +73,6 @@ class DescriptorTablePanel(QWidget):
         self._name_rows()
 
     def show_results(self, results: Results) -> None:
-        """Fill the table from these results."""
         achieved = results.best.achieved if results.best and results.best.achieved else None
         self._values = (results.particle_descriptors, results.fit_descriptors, achieved)
         self._fill()
@@ -138,7 +137,6 @@ class ErrorBarsPanel(QWidget):
         self._polyhedron_of = ""
 
     def show_results(self, results: Results, choices: Choices) -> None:
-        """Draw the errors of these results."""
         self._shown = (results, choices)
         if choices.selected != self._polyhedron_of:
             self._polyhedron, self._bounds, self._against_particle = {}, {}, {}
@@ -176,7 +174,6 @@ class ErrorBarsPanel(QWidget):
             self.plot.set_empty(True, failure or tr("The errors appear when the fit is measured."))
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         if self._shown:
             self.show_results(*self._shown)
 
@@ -198,7 +195,6 @@ class LossCurvePanel(QWidget):
         self._results: Results | None = None
 
     def show_results(self, results: Results) -> None:
-        """Draw the history of these results."""
         self._results = results
         history, done = results.loss_history, results.coarsened
         if not history and done is not None:  # of a method that has taken no step
@@ -229,7 +225,6 @@ class LossCurvePanel(QWidget):
         )
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         if self._results:
             self.show_results(self._results)
 
@@ -280,7 +275,6 @@ class SpectrumPanel(QWidget):
         self._shown: tuple[Results, Choices] | None = None
 
     def show_results(self, results: Results, choices: Choices) -> None:
-        """Draw the spectrum of these results."""
         self._shown = (results, choices)
         self.plot.set_empty(results.fit is None)
         if results.fit is None:
@@ -293,7 +287,6 @@ class SpectrumPanel(QWidget):
         self.plot.set_legend([(theme.fit, kept), (theme.border, tr("above l<sub>max</sub>"))])
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         if self._shown:
             self.show_results(*self._shown)
 
@@ -365,12 +358,10 @@ class SectionPanel(QWidget):
         self.refresh()
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the present plane and sections."""
         sections = self._sections
         for part in (self.direction, self.flipped, self.place):
             part.setEnabled(sections.shown)

@@ -84,7 +84,6 @@ class AnnealingView(QWidget):
         self._show_step(self.playback.step)
 
     def wait(self, sentence: str = WAIT) -> None:
-        """Show a status text."""
         self.sentence.setText(tr(sentence))
 
     @property
@@ -93,7 +92,6 @@ class AnnealingView(QWidget):
         return self._lesson.steps[self.playback.step] if self._lesson is not None else None
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         if self._lesson is not None:
             self._show_exact()

@@ -91,7 +91,6 @@ class PlaybackBar(QWidget):
 
     @property
     def playing(self) -> bool:
-        """Whether the timer is running."""
         return self._timer.isActive()
 
     @property
@@ -114,7 +113,6 @@ class PlaybackBar(QWidget):
         self.set_count(count, self.step)
 
     def go(self, step: int) -> None:
-        """Go to a step and pause."""
         self.pause()
         self.slider.setValue(step)
 
@@ -129,7 +127,6 @@ class PlaybackBar(QWidget):
             self._timer.start(self._interval())
 
     def pause(self) -> None:
-        """Stop the timer."""
         self._timer.stop()
         self.play.setText(tr("Play"))
 
@@ -267,7 +264,6 @@ class DegreesView(QWidget):
         self.link.frame(mesh.vertices)
 
     def show_steps(self, steps: tuple[DegreeStep, ...]) -> None:
-        """Show the degrees that are computed so far."""
         first = not self._steps
         self._steps = steps
         self.playback.extend(len(steps))
@@ -277,7 +273,6 @@ class DegreesView(QWidget):
             self._plot()
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
 
     def release(self) -> None:
@@ -379,13 +374,11 @@ class FieldView(QWidget):
         self.another.clicked.connect(self.draw_another)
 
     def take_material(self) -> None:
-        """Show the spectrum of the selected material."""
         card = materials()[self.material.value()]
         self.spectrum.setValue(np.array(card.relative_amplitudes[: min(DEGREE, card.l_max)]))
         self.redraw(again=True)
 
     def draw_another(self) -> None:
-        """Use the next seed."""
         self.seed += 1
         self.redraw(again=True)
         self.seedChanged.emit(self.seed)
@@ -410,13 +403,11 @@ class FieldView(QWidget):
         )
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         if self.drawn is not None:
             self._show(self.drawn, False)
 
     def release(self) -> None:
-        """Release graphics memory."""
         for frame in self.frames.values():
             frame.view.release()
 

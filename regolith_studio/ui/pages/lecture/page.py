@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget
 
-from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
@@ -123,11 +123,9 @@ class LecturePage(PageWidget):
 
     @property
     def lesson(self) -> str:
-        """The current lesson."""
         return LESSONS[self.tabs.currentIndex()]
 
     def draw_another(self) -> None:
-        """Use the next seed in the current lesson."""
         if self.lesson == "field":
             self.field.draw_another()
         elif self.lesson == "degrees":
@@ -201,7 +199,7 @@ class LecturePage(PageWidget):
             job,
             show,
             partial=show,
-            failed=self._refused,
+            failed=lambda failure: self.annealing.wait(failure.sentence),
             stopped=self._stopped,
             queue="annealing",
             repeats=True,
@@ -210,9 +208,6 @@ class LecturePage(PageWidget):
     def _stopped(self) -> None:
         self._made_for.pop("annealing", None)
         self.annealing.wait(tr("Stopped. Choose another seed, or come back to this page, to begin again."))
-
-    def _refused(self, failure: Failed) -> None:
-        self.annealing.wait(failure.sentence)
 
     def _grow(self, entry: ParticleEntry) -> None:
         fit = self._session.results.fit
@@ -255,7 +250,6 @@ class LecturePage(PageWidget):
             self._show_absence()
 
     def _show_absence(self) -> None:
-        """Show why there is no lesson."""
         opened = self._session.selected is not None
         words = tr("The lesson is still being computed.") if opened else tr("Open a particle first.")
         self._context.toast.note(words)

@@ -30,7 +30,6 @@ def symbol(key: str) -> str:
 
 
 def plain(key: str) -> str:
-    """A term of the loss for an axis."""
     return "J" if key == JACCARD else CATALOGUE[key].symbol.replace("_", "")
 
 
@@ -57,7 +56,6 @@ def _factor(weight: float) -> str:
 
 
 def temperature_line(settings: AnnealingSettings, k: int) -> str:
-    """T(k) with its numbers."""
     probability = settings.acceptance_probability(k)
     start, cooling = _in_formula(settings.start_temperature), _in_formula(settings.cooling)
     return (
@@ -67,7 +65,6 @@ def temperature_line(settings: AnnealingSettings, k: int) -> str:
 
 
 def proposal_line(step: AnnealingStep, lesson: AnnealingLesson) -> str:
-    """The normal step of one point."""
     if step.move is None:
         return r"$p_i^{\prime}\sim N(p_i,\,\sigma),\quad \sigma=\frac{1}{n}\sum_j|p_j|$"
     i, sigma = step.move.plane + 1, step.move.sigma * lesson.scale
@@ -85,7 +82,6 @@ def rule_lines(step: AnnealingStep, lesson: AnnealingLesson) -> tuple[str, ...]:
 
 
 def decision_line(step: AnnealingStep) -> str:
-    """The acceptance criterion with its numbers."""
     move = step.move
     if move is None:
         return r"$\Delta L<0\;$ " + tr("or") + r" $\;u<T(k)\quad\Rightarrow\quad$ " + tr("accept")
@@ -116,7 +112,6 @@ def outcome_of(step: AnnealingStep) -> str:
 
 
 def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
-    """Description of a step."""
     move = step.move
     if move is None:
         return tr(
@@ -164,7 +159,6 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
 
 
 def degree_lines(step: DegreeStep) -> tuple[str, ...]:
-    """The series with its numbers."""
     count = (step.l_max + 1) ** 2
     noun = tr("coefficient") if count == 1 else tr("coefficients")
     return (
@@ -175,7 +169,6 @@ def degree_lines(step: DegreeStep) -> tuple[str, ...]:
 
 
 def degree_sentence(step: DegreeStep) -> str:
-    """Description of the fit at a degree."""
     if step.mesh is None:
         return tr(
             "At {symbol} = {degree} the series has a negative radius somewhere and describes no surface.",
@@ -244,7 +237,6 @@ def exact_terms(lesson: AnnealingLesson) -> dict[str, float]:
 
 
 def exact_lines(lesson: AnnealingLesson) -> tuple[str, ...]:
-    """The loss of the exact method with its numbers."""
     exact = lesson.exact
     if exact is None:
         return ()

@@ -98,7 +98,6 @@ class SourceControls(QWidget):
             self.sourceChanged.emit(self.source.currentData())
 
     def choose_source(self, key: str) -> None:
-        """Select another source."""
         self.source.setCurrentIndex(max(0, self.source.findData(key)))
 
     def show_kind(self, brings_model: str, max_degree: int, words: str) -> None:
@@ -233,7 +232,6 @@ class DrawControls(QWidget):
         return {"n": self.number.value(), "seed": self.seed.value(), "size_range": bounds}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other values."""
         self.number.setValue(int(value.get("n", 100)))
         self.seed.setValue(int(value.get("seed", 0)))
         bounds = value.get("size_range")
@@ -302,7 +300,6 @@ class DrawControls(QWidget):
 def request_from(
     source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str
 ) -> GenerationRequest:
-    """The request with the values of the controls."""
     bounds = drawing["size_range"]
     if bounds is not None and not bounds[0] < bounds[1]:
         raise InputError(
@@ -384,7 +381,6 @@ class DistributionsPanel(QWidget):
         self._show()
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._show()
 
     def _show(self) -> None:
@@ -496,7 +492,6 @@ class ShapeGallery(QWidget):
         self.show_shapes((), ())
 
     def show_shapes(self, measured: tuple[Mesh, ...], drawn: tuple[Mesh, ...]) -> None:
-        """Show both rows at the same scale."""
         words = {
             (True, True): tr("measured above, drawn below"),
             (True, False): tr("measured; draw particles to compare"),

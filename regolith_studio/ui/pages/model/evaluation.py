@@ -77,7 +77,6 @@ class PanelGrid(QWidget):
         vbox(self.legend, (self._grid, 1), parent=self, margins=(8, 6, 8, 6))
 
     def set_panels(self, panels: Sequence[PopulationPanel], study: PopulationStudy) -> None:
-        """Draw other panels."""
         self._panels, self._study = tuple(panels), study
         while len(self.plots) < len(panels):
             plot = CurvePlot("", "", "")
@@ -90,7 +89,6 @@ class PanelGrid(QWidget):
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._draw()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -98,7 +96,6 @@ class PanelGrid(QWidget):
         self._place()
 
     def _place(self) -> None:
-        """As many plots in a row as there is room for."""
         shown = self.plots[: len(self._panels)]
         columns = max(1, min(len(shown), self.width() // MIN_WIDTH))
         for number, plot in enumerate(shown):
@@ -208,7 +205,6 @@ class StudyTableView(QTableWidget):
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
 
     def show_table(self, table: Table) -> None:
-        """Show another table."""
         self.setColumnCount(len(table.columns))
         self.setRowCount(len(table.rows))
         for at, column in enumerate(table.columns):
@@ -314,7 +310,6 @@ class EvaluationPanel(QWidget):
         }
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other choices."""
         self.all_models.setChecked(bool(value.get("all_models", False)))
         self.splits.setValue(int(value.get("splits", 5)))
         self.repeats.setValue(int(value.get("repeats", 1)))

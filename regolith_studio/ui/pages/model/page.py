@@ -59,7 +59,6 @@ MODEL_FILES, CARD_FILES = N_("Models (*.json)"), N_("Cards (*.json)")
 
 
 def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
-    """Ask for a name and write the model."""
     name, _ = QFileDialog.getSaveFileName(parent, tr("Save the model"), "model.json", tr(MODEL_FILES))
     if not name:
         return
@@ -133,7 +132,6 @@ class SourceBox:
         return key
 
     def labels(self) -> dict[str, str]:
-        """Label of each key."""
         count = len(self._session.particles)
         found = {OPEN_PARTICLES: tr("Open particles ({count})", count=count)}
         found |= {key: source.name for key, source in self._files.items()}
@@ -305,7 +303,6 @@ class ModelPage(PageWidget):
         self._try(self._evaluate)
 
     def adopt(self) -> None:
-        """Replace the open particles by the drawn ones."""
         if self._drawn is None or self._fitted is None:
             self._context.toast.problem(tr("There are no drawn particles yet: draw some first."))
             return
@@ -327,14 +324,12 @@ class ModelPage(PageWidget):
         )
 
     def save_model(self) -> None:
-        """Ask for a file and write the model."""
         if self._model is None or self._fitted is None:
             self._context.toast.problem(tr("There is no model to save: fit one first."))
             return
         save_model(self, self._context.toast, self._model, self._fitted.source)
 
     def save_card(self) -> None:
-        """Ask for a file and write a card of the sample."""
         sample = self._sample()
         if sample is None or self._fitted is None:
             self._context.toast.problem(tr("A material card needs a model of a sample: fit one first."))
@@ -390,7 +385,8 @@ class ModelPage(PageWidget):
         self.judging.start(tr("Evaluating models"), job, self.evaluation.show_evaluated)
 
     def _request(self) -> GenerationRequest:
-        return request_from(self.source.value(), self.drawing.value(), self._brings())
+        source = self.source.value()
+        return request_from(source, self.drawing.value(), self._sources.kind(source["source"]).brings_model)
 
     # --- results -------------------------------------------------------------------------------
 
@@ -491,9 +487,6 @@ class ModelPage(PageWidget):
     def _sample(self) -> Sample | None:
         content = self._fitted.source.content if self._fitted else None
         return content if isinstance(content, Sample) else None
-
-    def _brings(self) -> str:
-        return self._sources.kind(self.source.value()["source"]).brings_model
 
     def _add(self, source: ShapeSource) -> None:
         key = self._sources.add(source)

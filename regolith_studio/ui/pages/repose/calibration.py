@@ -97,7 +97,6 @@ class RunPanel(QWidget):
 
 
 def keys_box(entries: Mapping[str, tuple[str, str]], name: str, spoken: str) -> QComboBox:
-    """A choice of keys by their labels."""
     box = named(QComboBox(), name, spoken)
     for key, (label, _) in entries.items():
         box.addItem(tr(label), key)
@@ -179,7 +178,6 @@ class CalibrationPanel(RunPanel):
         )
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._draw()
 
     def request(self, dataset: Path | None, request: ReposeRequest) -> ReposeCalibrationRequest:
@@ -241,7 +239,6 @@ class CalibrationController:
         )
 
     def start(self) -> None:
-        """Start or resume the calibration."""
         if self.run.running:
             return
         try:
@@ -371,7 +368,6 @@ class StudyPanel(RunPanel):
         self.table.chosen.connect(self._announce)
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._draw()
 
     def request(self) -> tuple[str, tuple[float | str, ...], int, int]:
@@ -457,7 +453,6 @@ class StudyController:
         )
 
     def start(self) -> None:
-        """Start or resume the study."""
         if self.run.running:
             return
         try:
@@ -477,7 +472,6 @@ class StudyController:
         )
 
     def summary(self, run: ReposeStudyRun) -> RunSummary:
-        """A run of the study with its folder."""
         return RunSummary(study_place(self._place, run.folder), run.document)
 
     def _request(self) -> ReposeStudyRequest:

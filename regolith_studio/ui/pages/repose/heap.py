@@ -103,7 +103,6 @@ class SectionPlot(Plot):
         self.redraw()
 
     def show_nothing(self, sentence: str) -> None:
-        """Show why there is no section."""
         self._heap = self._discs = None
         self.set_empty(True, sentence)
         self.redraw()
@@ -328,7 +327,6 @@ class HeapSections(QWidget):
         self._show_chosen()
 
     def show_nothing(self, sentence: str) -> None:
-        """Show why there is no section."""
         self._sections = {}
         self._offer(False)
         self.plot.show_nothing(sentence)
@@ -394,7 +392,6 @@ def heap_record(
 
 
 def interval_caption(measured: ReposeMeasurement | NotAPileError | None) -> str:
-    """Caption of the second figure of the card."""
     if isinstance(measured, NotAPileError) and measured.status in ("concave", "convex"):
         return tr("Flanks: top | toe")
     share = measured.settings.confidence if isinstance(measured, ReposeMeasurement) else 0.95

@@ -189,7 +189,6 @@ class ReposePage(PageWidget):
     # --- commands ------------------------------------------------------------------------------
 
     def open_dataset(self) -> None:
-        """Ask for a dataset folder."""
         if name := QFileDialog.getExistingDirectory(
             self, tr("Open a dataset"), str(self.setup.dataset or "")
         ):
@@ -222,7 +221,6 @@ class ReposePage(PageWidget):
         self.run_test()
 
     def run_test(self) -> None:
-        """Simulate the case of the set-up panel."""
         dataset = self.setup.dataset
         if dataset is None or self.run.running:
             note = tr("There is no dataset yet: open or build one first.")
@@ -254,7 +252,6 @@ class ReposePage(PageWidget):
             self.open_path(path)
 
     def open_path(self, path: Path) -> None:
-        """Measure the pile of another program."""
         try:
             read = read_pile(self, path)
         except RegolithError as error:
@@ -299,12 +296,10 @@ class ReposePage(PageWidget):
         )
 
     def choose_folder(self) -> None:
-        """Ask for the folder of runs."""
         if name := FolderDialog.ask(self, tr("Folder of runs"), str(self._folder)):
             self.set_runs_folder(Path(name))
 
     def set_runs_folder(self, folder: Path) -> None:
-        """Set the folder of runs and list its runs."""
         self._folder = folder
         self._context.remember("folder", str(folder))
         self._list_runs()

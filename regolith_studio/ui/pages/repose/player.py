@@ -70,7 +70,6 @@ class RunPlayer(QWidget):
         self._set_files([])
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self._draw()
 
@@ -135,12 +134,10 @@ class RunPlayer(QWidget):
             self._timer.start()
 
     def stop(self) -> None:
-        """Pause."""
         self._timer.stop()
         self.button.setText(tr("Play"))
 
     def release(self) -> None:
-        """Release graphics memory."""
         self.stop()
         self._settle.stop()
         self.frame.view.release()

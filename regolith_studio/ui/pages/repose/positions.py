@@ -115,7 +115,6 @@ def _metres(unit: str) -> float:
 
 
 def choose_positions(parent: QWidget) -> Path | None:
-    """Ask for a file of positions."""
     name, _ = QFileDialog.getOpenFileName(parent, tr("Measure positions"), "", tr(POSITIONS))
     return Path(name) if name else None
 

@@ -80,7 +80,6 @@ class RunsPanel(QWidget):
         self.table.select(next((row for row, run in enumerate(self._runs) if run.folder == folder), None))
 
     def current(self) -> RunSummary | None:
-        """The selected run."""
         row = self.table.selected()
         return None if row is None else self._runs[row]
 

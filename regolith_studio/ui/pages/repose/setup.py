@@ -110,7 +110,6 @@ class LimitsStrip(QWidget):
         self.show_scale(None)
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self._colour()
 
@@ -236,16 +235,13 @@ class SetupPanel(QWidget):
 
     @property
     def numerics(self) -> SettingsForm:
-        """The settings of the selected engine."""
         return self._numerics[self.engine.currentData()]
 
     @property
     def dataset(self) -> Path | None:
-        """The selected dataset folder."""
         return self._dataset
 
     def set_dataset(self, folder: Path | None) -> None:
-        """Select a dataset folder."""
         self._dataset = folder
         self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
         self.valueChanged.emit()
@@ -261,7 +257,6 @@ class SetupPanel(QWidget):
             self.filling.setCurrentIndex(max(0, self.filling.findData(chosen)))
 
     def request(self) -> ReposeRequest:
-        """The request with the values of the panel."""
         engine = engine_named(self.engine.currentData())
         case = ReposeCase(
             test=self.test.value(),
@@ -277,11 +272,9 @@ class SetupPanel(QWidget):
         return ReposeRequest(case, engine.key, settings, evaluation, threads=cores(), filling=filling)
 
     def evaluation_settings(self) -> EvaluationSettings:
-        """The settings of the evaluation."""
         return EvaluationSettings(**self.evaluation.value())
 
     def set_evaluation(self, **changes: Any) -> None:
-        """Change settings of the evaluation."""
         self.evaluation.setValue(self.evaluation.value() | changes)
         self.evaluationChanged.emit()
 

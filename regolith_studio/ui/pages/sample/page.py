@@ -315,7 +315,6 @@ class SamplePage(PageWidget):
         self._context.toast.note(tr("The table is on the clipboard."))
 
     def keep_selected_particles(self) -> None:
-        """Close all particles but the selected ones."""
         chosen = set(self.table.chosen())
         if not any(entry.id in chosen for entry in self._session.particles):
             self._context.toast.problem(tr("Choose the rows to keep first."))

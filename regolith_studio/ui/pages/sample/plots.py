@@ -66,11 +66,9 @@ class ScatterPanel(QWidget):
         self.set_axes(*ZINGG)
 
     def axes(self) -> tuple[str, str]:
-        """Keys of the two descriptors."""
         return str(self.across.currentData()), str(self.up.currentData())
 
     def set_axes(self, x: str, y: str) -> None:
-        """Select two other descriptors."""
         for box, key in ((self.across, x), (self.up, y)):
             with QSignalBlocker(box):
                 box.setCurrentIndex(max(0, box.findData(key)))
@@ -85,7 +83,6 @@ class ScatterPanel(QWidget):
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._draw()  # the names of Zingg's classes take the font of when they are drawn
 
     def _arrange(self) -> None:
@@ -273,7 +270,6 @@ class StatisticsPanel(QWidget):
         self.border.toggled.connect(lambda _on: self._fill())
 
     def show_entries(self, entries: Sequence[ParticleEntry]) -> None:
-        """Show the statistics of other particles."""
         self._entries = tuple(entries)
         self.border.setVisible(has_weights(entries))
         self._fill()
@@ -294,11 +290,9 @@ class StatisticsPanel(QWidget):
         self.border.setChecked(bool(choices.get("border", self.border.isChecked())))
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._fill()
 
     def value(self) -> Table:
-        """The statistics."""
         return statistics_table(self._entries, *self.choices().values())
 
     def _draw(self, spread: Distribution | None) -> None:
@@ -352,15 +346,10 @@ class StatisticsPanel(QWidget):
         self.table.setHorizontalHeaderLabels([_two_lines(each) for each in shown.columns])
         for at, row in enumerate(shown.rows):
             for column, cell in enumerate(row):
-                item = QTableWidgetItem(short_number(cell) if isinstance(cell, float) else _word(cell))
+                item = QTableWidgetItem(short_number(cell) if isinstance(cell, float) else tr(str(cell)))
                 if column:
                     item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
                 self.table.setItem(at, column, item)
-
-
-def _word(cell: object) -> str:
-    """The name of a group, translated if it is one of the program."""
-    return tr(str(cell))
 
 
 def _two_lines(column: Column) -> str:

@@ -97,7 +97,6 @@ class SegmentationControls(QWidget):
         self.setValue(self._recipe)
 
     def value(self) -> GrainSettings:
-        """The settings."""
         how, method = self._recipe.segmentation, self.threshold.value()
         threshold = self._threshold.values()
         if method in CLASSIFIER:
@@ -174,7 +173,6 @@ class SegmentationControls(QWidget):
                 self.threshold.setCurrentIndex(0)
 
     def show_automatic_level(self, level: float | None) -> None:
-        """Show the value of an automatic threshold."""
         if level is not None and self.threshold.currentData() in ("otsu", "multi-otsu"):
             self._show_level(level)
 
@@ -266,7 +264,6 @@ class SegmentationControls(QWidget):
 
 
 def button(name: str, words: str, tip: str) -> QPushButton:
-    """A button with its object name and tool tip."""
     return named(QPushButton(words), name, tip=tip)
 
 
@@ -371,7 +368,6 @@ class WorkflowPanel(QWidget):
         self.card.show_record(ResultRecord(note=note))
 
     def set_particles(self, summary: str) -> None:
-        """Show the result of the extraction."""
         self.made.setText(summary)
         self.show_them.show()
 

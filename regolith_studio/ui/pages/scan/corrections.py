@@ -98,7 +98,6 @@ class Corrections(QObject):
 
     @property
     def state(self) -> CorrectionState:
-        """Examples and edits so far."""
         return self.history.value
 
     @property
@@ -159,20 +158,17 @@ class Corrections(QObject):
         self._edits.tools[NO_TOOL].setChecked(True)
 
     def undo(self) -> None:
-        """Take the last step back."""
         self._clicks, self._repaired = (), None
         self._edits.show_hint()
         self.history.undo()
         self._refresh()
 
     def redo(self) -> None:
-        """Take it again."""
         self._repaired = None
         self.history.redo()
         self._refresh()
 
     def load(self, training: ObjectTraining) -> None:
-        """Use an object classifier from a file."""
         self._push(replace(self.state, examples=(), loaded=training, actions=training.actions, applied=True))
 
     def save(self, path: Path, scan: Path, done: Callable[[Path], None]) -> None:

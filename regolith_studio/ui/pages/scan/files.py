@@ -99,14 +99,12 @@ class VolumeOpening(QObject):
         volume_sandbox().start_in_background()  # so that the first file need not wait for it
 
     def ask_for_file(self) -> None:
-        """Ask for a volume and open it."""
         kinds = tr(VOLUMES, suffixes=" ".join(f"*{suffix}" for suffix in sorted(volume_suffixes())))
         path = ask_to_open(self._page, self._context, tr("Open a volume"), kinds)
         if path is not None:
             self.open(path)
 
     def ask_for_folder(self) -> None:
-        """Ask for a folder of slices and open it."""
         start = str(last_folder(self._context))
         name = QFileDialog.getExistingDirectory(self._page, tr("Open a folder of slices"), start)
         if name:
@@ -127,7 +125,6 @@ class VolumeOpening(QObject):
         )
 
     def open_sample(self) -> None:
-        """Open the shipped scan."""
         self.read(VolumeInput(sample_file("grey")))
 
     def open_gradient(self) -> None:
@@ -135,7 +132,6 @@ class VolumeOpening(QObject):
         self.read(VolumeInput(sample_file("grey", "gradient")))
 
     def read(self, volume: VolumeInput) -> None:
-        """Read the region of interest of a volume."""
         region = self._controls.value().region
         self.wanted, self.wanted_region = volume, region
         job = Job(read_scan, (volume, region))

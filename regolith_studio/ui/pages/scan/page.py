@@ -68,7 +68,6 @@ class FramePreview(QObject):
             self._timer.start()
 
     def stop(self) -> None:
-        """Stop what was scheduled or has begun."""
         self._timer.stop()
         self._stop_jobs()
         self.pending = False
@@ -217,7 +216,6 @@ class ScanPage(PageWidget):
     # --- the steps -----------------------------------------------------------------------------
 
     def find_grains(self) -> None:
-        """Segment the whole volume."""
         if self.scan is None or self.scan.volume.kind == "labels":
             self._context.toast.note(tr("Open a volume of grey values first."))
             return
@@ -240,7 +238,6 @@ class ScanPage(PageWidget):
         self.making.save_labels(self.grains, self.controls.value())
 
     def make_particles(self) -> None:
-        """Convert the grains to particles and open them."""
         segmentation = self.corrections.added_to(self._found_with or SegmentationSettings())
         settings = replace(self.controls.value(), segmentation=segmentation, region=self.opening.region)
         self.making.make_particles(self.grains, settings)

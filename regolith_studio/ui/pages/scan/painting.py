@@ -52,7 +52,6 @@ class Painting(QObject):
 
     @property
     def strokes(self) -> Strokes:
-        """All strokes so far."""
         return self.history.value
 
     def set_volume(self, volume: Volume | None) -> None:
@@ -65,12 +64,10 @@ class Painting(QObject):
         self._show()
 
     def undo(self) -> None:
-        """Take the last stroke back."""
         self.history.undo()
         self._learn()
 
     def redo(self) -> None:
-        """Draw it again."""
         self.history.redo()
         self._learn()
 
@@ -91,7 +88,6 @@ class Painting(QObject):
             self._context.start(tr("Saving the classifier"), job, done, queue="classifier")
 
     def stop(self) -> None:
-        """Stop training and predicting."""
         self._context.stop("labels")
         self._context.stop("train")
         self._context.stop("predict")

@@ -81,7 +81,6 @@ class SliceView(QWidget):
         self.set_theme(current_theme())
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self.canvas.setBackground(theme.window)
         self._frame.setPen(pg.mkPen(theme.accent, width=2))
         for line in self._cross:
@@ -203,11 +202,9 @@ class SliceView(QWidget):
 
     @property
     def is_drawing(self) -> bool:
-        """Whether a line has begun."""
         return bool(self._corners)
 
     def set_box_shown(self, shown: bool) -> None:
-        """Set whether the box of the preview is drawn."""
         self._frame.setOpacity(1.0 if shown else 0.0)
 
     def _painted(self, labels: NDArray[Any]) -> NDArray[np.uint8]:
@@ -247,7 +244,6 @@ class SliceView(QWidget):
             self.placePicked.emit(*(min(max(at, 0), end) for at, end in zip(position, ends, strict=True)))
 
     def hover(self, point: QPointF | None) -> None:
-        """Tell the voxel under the mouse."""
         if self._volume is None or point is None:
             self.hovered.emit(None)
             return

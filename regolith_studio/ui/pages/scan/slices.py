@@ -63,7 +63,6 @@ class HistogramPlot(Plot):
         self.line.sigDragged.connect(lambda line: self.levelDragged.emit(float(line.value())))
 
     def set_scanned(self, seen: Histogram | None) -> None:
-        """Set the histogram of the scanned volume."""
         self._scanned, self._denoised = seen, None
         self.set_empty(seen is None, tr("A volume of labels has no histogram of grey values."))
         self.redraw()
@@ -105,7 +104,6 @@ class HistogramPlot(Plot):
         return "\n".join(lines)
 
     def numbers(self) -> Numbers:
-        """Edges of the bins and what is in them."""
         rows: list[tuple[str | float, ...]] = [
             (label, float(low), float(high), int(count))
             for seen, _, label in self._shown()
@@ -159,7 +157,6 @@ class GrainsView:
         self._size = np.ones(3)
 
     def set_volume(self, volume: Volume) -> None:
-        """Show the empty box of another volume."""
         self._size = np.array(volume.shape) * volume.voxel_size
         extent = " × ".join(number_text(edge, ".4g" if edge < 1e4 else ".0f") for edge in self._size.tolist())
         self._extent = tr("{edges} µm", edges=extent)
@@ -167,7 +164,6 @@ class GrainsView:
         self.clear()
 
     def clear(self) -> None:
-        """Show the box of the volume alone."""
         self.frame.set_texts(tr("Volume"), self._extent)
         self.frame.view.draw(lambda plotter: show_grains(plotter, None, _NONE, self._size))
 
@@ -190,7 +186,6 @@ class GrainsView:
         self.frame.view.draw(lambda plotter: show_grains(plotter, surface, rgb, self._size, highlighted))
 
     def release(self) -> None:
-        """Give graphics memory back."""
         self.frame.view.release()
 
 
@@ -301,7 +296,6 @@ class SlicesView(QWidget):
         self._show_boxes(False)
 
     def go_to(self, position: tuple[int, int, int]) -> None:
-        """Show the slices through a voxel."""
         if self._scan is None:
             return
         self.position = position
@@ -316,7 +310,6 @@ class SlicesView(QWidget):
             self.boxMoved.emit()
 
     def show_preview(self, found: Segmentation | None, box: Box) -> None:
-        """Overlay the grains of the preview."""
         self._found = found
         self._labels = None if found is None else SliceImages(found.labels.array)
         for view in self.views:
@@ -396,7 +389,6 @@ class SlicesView(QWidget):
         self._show_painting()
 
     def clear_predictions(self) -> None:
-        """Forget all probabilities."""
         self._predicted.clear()
         self._show_painting()
 

@@ -169,7 +169,6 @@ class BrushPanel(TrainingPanel):
 
     @property
     def brush(self) -> Brush:
-        """Class and diameter of the next stroke."""
         label = ERASER if self.eraser.isChecked() else int(self.kind.currentData())
         return Brush(label, float(self.diameter.value()))
 
@@ -236,7 +235,6 @@ class BrushPanel(TrainingPanel):
 
 
 def swatch(colour: str) -> QIcon:
-    """A square of one colour."""
     pixmap = QPixmap(12, 12)
     pixmap.fill(QColor(colour))
     return QIcon(pixmap)
@@ -291,7 +289,6 @@ class ObjectsPanel(TrainingPanel):
         self.set_counts({}, "")
 
     def action_of_each(self) -> tuple[ObjectAction, ...]:
-        """What is done with each class."""
         return tuple(box.currentData() for box in self.action_boxes)
 
     def set_actions(self, actions: tuple[ObjectAction, ...]) -> None:
@@ -394,7 +391,6 @@ class SuspectsTable(TextTable):
         )
 
     def show_objects(self, objects: Sequence[SuspectObject]) -> None:
-        """List other grains."""
         self._objects = tuple(objects)
         rows = [
             (
@@ -409,7 +405,6 @@ class SuspectsTable(TextTable):
         self.set_rows(rows, [tip] * len(rows))
 
     def clear(self) -> None:
-        """List none."""
         self.show_objects(())
 
 
@@ -461,7 +456,6 @@ class EditsPanel(QWidget):
         self.redo.setEnabled(can_redo)
 
     def set_edits(self, edits: Sequence[LabelEdit]) -> None:
-        """List the corrections."""
         self.list.clear()
         for number, edit in enumerate(edits, start=1):
             place = ", ".join(str(at + 1) for at in edit.points[0])

@@ -99,7 +99,6 @@ class VolumeDialog(QDialog):
             self._check_gaps()
 
     def value(self) -> VolumeInput:
-        """The entered properties."""
         raw = None
         if self._header is None:
             x, y, z = (field.value() for field in self.shape)

@@ -150,7 +150,9 @@ class StudiesPage(PageWidget):
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.lmax_study.tolerance.valueChanged.connect(lambda _value: self._show(Kind.LMAX_STUDY))
         bindings.refresh("particles", self._follow_particles)
-        bindings.refresh("choices", self._show_l_max, ("l_max",), slow=True)
+        bindings.refresh(
+            "choices", lambda: self.lmax_study.show_l_max(self._session.choices.l_max), ("l_max",), slow=True
+        )
         bindings.refresh("choices", self._mark_gallery, slow=True)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
@@ -262,7 +264,6 @@ class StudiesPage(PageWidget):
         self._context.toast.note(sentence, listed)
 
     def _unfinished(self) -> list[str]:
-        """Titles of the tabs whose results are partial."""
         partial_states = (ResultState.RUNNING, ResultState.STOPPED)
         return [
             self.tabs.tabText(self.tabs.indexOf(panel))
@@ -316,9 +317,6 @@ class StudiesPage(PageWidget):
         if self._drawn is not None:
             made, now = self._drawn[0], self._session.choices
             self.drawing.set_outdated(depends(Kind.COARSENING_STUDY, made, now))
-
-    def _show_l_max(self) -> None:
-        self.lmax_study.show_l_max(self._session.choices.l_max)
 
     def _place(self) -> None:
         self.tabs = tabs("studies_tabs", list(zip(self._panels, map(tr, TABS), strict=True)))

@@ -77,7 +77,6 @@ class BandPlot(CurvePlot):
 
     @property
     def series(self) -> tuple[Series, ...]:
-        """The series that are drawn."""
         return self._series
 
     def set_series(self, series: Sequence[Series], behind: Sequence[PlotCurve] = ()) -> None:
@@ -118,7 +117,6 @@ class BandPlot(CurvePlot):
         return words
 
     def scene_position(self, x: float, y: float) -> QPointF:
-        """Position of a point in the scene."""
         with np.errstate(divide="ignore", invalid="ignore"):
             high = float(np.log10(y)) if self._log_y else y
         place: QPointF = self.canvas.getViewBox().mapViewToScene(QPointF(x, high))
@@ -163,7 +161,6 @@ class SensitivityTable(QWidget):
         self._fill()
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         self._theme = theme
         self._fill()
 
@@ -222,7 +219,6 @@ COMPUTE, RECOMPUTE = N_("Compute"), N_("Recompute")
 
 
 def study_card(name: str, *captions: str) -> ResultView:
-    """The card above a study."""
     return ResultView(f"{name}_result", captions, tr(COMPUTE), tr(RECOMPUTE), lines=2)
 
 
@@ -314,7 +310,6 @@ class LmaxStudyPanel(QWidget):
         return ResultRecord(values, particles_text(study), made_with, note=note)
 
     def show_l_max(self, l_max: int) -> None:
-        """Mark the chosen degree."""
         self.plot.set_marker(float(l_max))
 
 
@@ -362,7 +357,6 @@ class CoarseningStudyPanel(QWidget):
         return coarsening_record(study, choices, values, "; ".join(notes))
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
-        """Take the colours of a theme."""
         self._set_tool_tips()
 
     def _set_tool_tips(self) -> None:

@@ -255,7 +255,6 @@ class TradeoffPlot(BandPlot):
 
 
 def sensitivity_part() -> SensitivityTable:
-    """The table of a sensitivity study."""
     headers = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), OVERLAP)
     return SensitivityTable(tr("Change of each error when one weight of the loss is changed."), headers)
 
@@ -392,7 +391,6 @@ class GalleryPanel(QWidget):
         study_panel(self, self.card, self._parts)
 
     def clear(self) -> None:
-        """Show that there are no polyhedra."""
         self._cells, self._particles = (), ()
         self._timer.stop()
         self._stack.setCurrentIndex(0)
@@ -409,18 +407,15 @@ class GalleryPanel(QWidget):
         self._paint_particles()
 
     def show_cells(self, cells: Sequence[GalleryCell]) -> None:
-        """Fill the cells of new polyhedra."""
         for cell in cells[len(self._cells) :]:
             self.table.setItem(cell.row + 1, cell.column, self._cell(cell))
         self._cells = tuple(cells)
 
     def value(self) -> tuple[GalleryCell, ...]:
-        """The polyhedra that are shown."""
         return self._cells
 
     @property
     def total(self) -> int:
-        """How many there will be."""
         return len(self._particles) * (self.table.rowCount() - 1)
 
     def record(self, choices: Choices, rows: Sequence[LossVariant]) -> ResultRecord:
@@ -429,7 +424,6 @@ class GalleryPanel(QWidget):
         return coarsening_record(study, choices, (f"{len(self._cells)} / {self.total}",))
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         if theme != self._theme:
             self._theme = theme
             for cell in self._cells:
@@ -495,5 +489,4 @@ class _PictureAbove(QStyledItemDelegate):
 
 
 def picture_size() -> QSize:
-    """Size of a thumbnail."""
     return QSize(SIZE, SIZE)

@@ -54,7 +54,6 @@ class BarPlot(Plot):
 
     @property
     def series(self) -> tuple[BarSeries, ...]:
-        """The bars that are drawn."""
         return self._series
 
     def set_bars(
@@ -224,7 +223,6 @@ class SpectrumEditor(Plot):
         self.redraw()
 
     def is_changed(self) -> bool:
-        """Whether the user has changed a bar."""
         return bool((self._values != self._fitted).any())
 
     def reset(self) -> None:

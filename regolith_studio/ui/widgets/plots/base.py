@@ -88,7 +88,6 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         return self._box
 
     def getAxis(self, side: str) -> pg.AxisItem:
-        """The axis "left" or "bottom"."""
         return self._axes[side]
 
     def addItem(self, item: Any, ignoreBounds: bool = False) -> None:
@@ -132,20 +131,16 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         self._box.setRange(*ranges, **options)
 
     def setXRange(self, low: float, high: float, padding: float | None = None) -> None:
-        """Set the visible range of x."""
         self._box.setXRange(low, high, padding=padding)
 
     def setYRange(self, low: float, high: float, padding: float | None = None) -> None:
-        """Set the visible range of y."""
         self._box.setYRange(low, high, padding=padding)
 
     def viewRange(self) -> list[list[float]]:
-        """The visible ranges of x and y."""
         seen: list[list[float]] = self._box.viewRange()
         return seen
 
     def enableAutoRange(self) -> None:
-        """Let both axes follow the data."""
         self._box.enableAutoRange()
 
     def setLimits(self, **limits: float | None) -> None:
@@ -153,7 +148,6 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         self._box.setLimits(**limits)
 
     def setAspectLocked(self, locked: bool) -> None:
-        """Set whether x and y have the same scale."""
         self._box.setAspectLocked(locked)
 
 
@@ -342,7 +336,6 @@ class Plot(QWidget):
         return sum(metrics.horizontalAdvance(f"MM {text}") for text in words)
 
     def is_empty(self) -> bool:
-        """Whether the placeholder is shown."""
         return self._stack.currentIndex() == 0
 
     def set_legend(self, entries: list[tuple[str, str]]) -> None:
@@ -357,7 +350,6 @@ class Plot(QWidget):
         self._make_room()
 
     def set_labels(self, x: str, y: str) -> None:
-        """Set the labels of the axes."""
         self._labels = (x, y)
         font = QFont(self.font())
         font.setPointSizeF(font.pointSizeF() - 0.5)
@@ -365,13 +357,11 @@ class Plot(QWidget):
             self.axes[side].set_label_text(text, self.theme.muted, font)
 
     def small_font(self) -> QFont:
-        """Font of the tick labels."""
         small = QFont(self.font())
         small.setPointSizeF(max(6.0, self.font().pointSizeF() - 1.0))
         return small
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
         if theme == self._painted:
             return
         self.theme = self._painted = theme
@@ -429,12 +419,15 @@ class Plot(QWidget):
             self.menu().popup(event.globalPos())
 
     def menu(self) -> QMenu:
-        """The context menu."""
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction(tr("Save &figure …"), self._choose_figure_file)
+        menu.addAction(
+            tr("Save &figure …"), lambda: self._save(tr("Save figure"), FIGURE_WRITERS, self.save_figure)
+        )
         if self.numbers()[0]:
-            menu.addAction(tr("Save &numbers …"), self._choose_numbers_file)
+            menu.addAction(
+                tr("Save &numbers …"), lambda: self._save(tr("Save numbers"), (".csv",), self.save_numbers)
+            )
         return menu
 
     def save_figure(self, path: Path) -> None:
@@ -442,14 +435,7 @@ class Plot(QWidget):
         save_figure(self._page, path)
 
     def save_numbers(self, path: Path) -> None:
-        """Write the data as a CSV file."""
         save_numbers(self.accessibleName() or self.objectName(), *self.numbers(), path)
-
-    def _choose_figure_file(self) -> None:
-        self._save(tr("Save figure"), FIGURE_WRITERS, self.save_figure)
-
-    def _choose_numbers_file(self) -> None:
-        self._save(tr("Save numbers"), (".csv",), self.save_numbers)
 
     def _save(self, title: str, endings: Iterable[str], write: Callable[[Path], None]) -> None:
         known = tuple(endings)
@@ -466,6 +452,5 @@ class Plot(QWidget):
             QMessageBox.warning(self, title, inert(str(error)))
 
     def pen(self, colour: str, width: float = 1.0, dash: bool = False) -> object:
-        """A solid or dashed pen."""
         style = Qt.PenStyle.DashLine if dash else Qt.PenStyle.SolidLine
         return pg.mkPen(QColor(colour), width=width, style=style)

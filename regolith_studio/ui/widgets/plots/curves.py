@@ -55,7 +55,6 @@ class CurveItems:
         self.points.setData(across[seen], up[seen], brush=QColor(symbols))
 
     def remove(self) -> None:
-        """Remove the curve from the canvas."""
         self._canvas.removeItem(self.line)
         self._remove_points()
 
@@ -117,11 +116,9 @@ class CurvePlot(Plot):
 
     @property
     def curves(self) -> tuple[PlotCurve, ...]:
-        """The curves that are drawn."""
         return self._curves
 
     def set_curves(self, curves: Sequence[PlotCurve]) -> None:
-        """Draw other curves."""
         self._curves = tuple(curves)
         self.set_empty(not any(curve.x for curve in curves))
         self.redraw()

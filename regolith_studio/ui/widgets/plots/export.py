@@ -47,7 +47,6 @@ def plain_text(rich: str) -> str:
 
 
 def png_of_image(image: QImage) -> bytes:
-    """An image as the content of a PNG file."""
     with _Bytes() as device:
         image.save(device, "PNG")  # type: ignore[call-overload]  # the stubs know file names only
         return bytes(device.data().data())
