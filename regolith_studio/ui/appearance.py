@@ -6,21 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, cast
 
 from PySide6.QtCore import QByteArray, QObject, QSignalBlocker, QSize, Signal
-from PySide6.QtWidgets import (
-    QApplication,
-    QDialogButtonBox,
-    QFormLayout,
-    QMainWindow,
-    QSpinBox,
-    QSplitter,
-    QToolBar,
-    QWidget,
-)
+from PySide6.QtWidgets import QApplication, QFormLayout, QMainWindow, QSpinBox, QSplitter, QToolBar, QWidget
 
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.layout import STANDARD_SIZES, GrowingDialog, named, vbox
+from regolith_studio.ui.layout import STANDARD_SIZES, GrowingDialog, dialog_buttons, named, vbox
 from regolith_studio.ui.theme import (
     LARGEST,
     SMALLEST,
@@ -170,9 +161,7 @@ class PreferencesDialog(GrowingDialog):
         form.addRow("", self.note)
         form.addRow(tr("Theme"), self.theme)
         form.addRow(tr("Font size"), self.font_size)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
-        buttons.rejected.connect(self.reject)
-        vbox(form, buttons, parent=self, margins=None)
+        vbox(form, dialog_buttons(self), parent=self, margins=None)
         self.note.hide()
 
 

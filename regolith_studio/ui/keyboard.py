@@ -32,7 +32,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import hbox, named, vbox
+from regolith_studio.ui.layout import dialog_buttons, hbox, named, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, hint_label
 
@@ -390,9 +390,8 @@ class ShortcutsDialog(QDialog):
         mouse.setHorizontalSpacing(24)
         for gesture, meaning in MOUSE:
             mouse.addRow(tr(gesture), QLabel(tr(meaning)))
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
+        buttons = dialog_buttons(self)
         buttons.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)  # Enter searches
-        buttons.rejected.connect(self.reject)
         vbox(
             self.search,
             (self.table, 1),

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import (
     QBoxLayout,
     QComboBox,
     QDialog,
+    QDialogButtonBox,
     QHBoxLayout,
     QLayout,
     QScrollArea,
@@ -146,6 +147,17 @@ def left_aligned(part: QWidget) -> QWidget:
     row.addWidget(part)
     row.addStretch(1)
     return made
+
+
+def dialog_buttons(dialog: QDialog, *accepting: QDialogButtonBox.StandardButton) -> QDialogButtonBox:
+    """The buttons below a dialog: those that accept it with Cancel, or Close alone."""
+    box = QDialogButtonBox(parent=dialog)
+    kinds = QDialogButtonBox.StandardButton
+    for kind in (*accepting, kinds.Cancel) if accepting else (kinds.Close,):
+        box.addButton(kind)
+    box.accepted.connect(dialog.accept)
+    box.rejected.connect(dialog.reject)
+    return box
 
 
 CONTROLS_WIDTH = 290

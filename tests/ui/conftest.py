@@ -23,13 +23,18 @@ from PySide6.QtWidgets import QApplication, QWidget
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from bootstrap import virtual_display
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.session import Session
 from regolith_studio.ui import main_window, startup
 from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.startup import make_application
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.startup import make_application, open_window
 from regolith_studio.ui.translation import install_translators, remove_translators
 from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines
+from regolith_studio.ui.widgets.toast import Toast
 
 
 @pytest.fixture(scope="session")
@@ -161,6 +166,48 @@ def preferences(tmp_path, monkeypatch):
     """Preferences of nobody, kept nowhere else."""
     monkeypatch.setenv("REGOLITH_STUDIO_CONFIG", str(tmp_path / "config"))
     return Preferences()
+
+
+@pytest.fixture
+def sample_window(shown, preferences, settled):
+    """Opens a window on the sample; its first polyhedron is there when it is returned."""
+
+    def run(width=1100, height=720):
+        made = open_window(views="image", preferences=preferences)
+        made.resize(width, height)
+        settled(shown(made), 170.0)
+        assert made.session.results.coarsened is not None
+        return made
+
+    return run
+
+
+@pytest.fixture
+def window(sample_window):
+    """A window on the sample, with its first polyhedron."""
+    return sample_window()
+
+
+@pytest.fixture
+def page_of(shown, preferences):
+    """Builds a page alone, over a session of its own whose jobs run at once where it is given none."""
+    ends = []
+
+    def build(page, width, height, session=None, go=lambda _key: None):
+        session, frame = session or Session(InlineRunner()), shown(QWidget())
+        toast = Toast(frame)
+        bindings = Bindings(session, toast.problem, frame)
+        commands = Commands(session, preferences, toast, frame)
+        context = PageContext(page.key, session, bindings, preferences, toast, commands, "image", go)
+        made = shown(page.build(context))
+        made.resize(width, height)
+        made.session, made.toast, made.context = session, toast, context
+        ends.extend((session.close, made.on_close, bindings.disconnect_all))
+        return made
+
+    yield build
+    while ends:
+        ends.pop()()
 
 
 def _settle():

@@ -13,21 +13,10 @@ from regolith_studio.scene import clipping, facets
 from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import OUTLINE, SURFACE
-from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.labels import grouped_number
 
 SECONDS = 120.0
-
-
-@pytest.fixture
-def window(shown, preferences, wait, settled):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1100, 720)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None, SECONDS)
-    settled(made)
-    return made
 
 
 def actor(window, view, name):

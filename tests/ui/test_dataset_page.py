@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox, QPushButton
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.export import ExportResult
@@ -17,20 +17,14 @@ from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.triangles import stl_bytes
-from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.recipe import Exports, Recipe, Representatives, read_recipe
 from regolith_studio.session.run_recipe import run_recipe
-from regolith_studio.session.session import Session
-from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.pages.dataset.export_panel import groups
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
-from regolith_studio.ui.widgets.toast import Toast
 from tests.dataset.example import elbow_entry, entry
 
 
@@ -45,23 +39,10 @@ def grains(count=8, first=0):
 
 
 @pytest.fixture
-def page(shown, preferences):
-    session = Session(InlineRunner())
-    session.choose(method="quadric", target="particle")
-    window = shown(QWidget())
-    toast = Toast(window)
-    bindings = Bindings(session, toast.problem, window)
-    commands = Commands(session, preferences, toast, window)
-    context = PageContext(
-        "dataset", session, bindings, preferences, toast, commands, "image", lambda _key: None
-    )
-    made = shown(PAGE.build(context))
-    made.resize(1300, 900)
-    made.session, made.toast = session, toast
-    yield made
-    bindings.disconnect_all()
-    made.on_close()
-    session.close()
+def page(page_of):
+    made = page_of(PAGE, 1300, 900)
+    made.session.choose(method="quadric", target="particle")
+    return made
 
 
 @pytest.fixture

@@ -12,21 +12,10 @@ from regolith_studio.scene import overlays
 from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import SURFACE
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
-from regolith_studio.ui.startup import open_window
 
 SECONDS = 120.0
 VEIL = OTHER + SURFACE
 ASKED = "regolith_studio.ui.pages.explore.pictures.QFileDialog.getSaveFileName"
-
-
-@pytest.fixture
-def window(shown, preferences, wait, settled):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1100, 720)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None, SECONDS)
-    settled(made)
-    return made
 
 
 def seen(window, view, name):

@@ -12,8 +12,6 @@ import pytest
 from PIL import Image
 from PySide6.QtTest import QTest
 
-from regolith_studio.ui.startup import open_window
-
 IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
 SECONDS = 170.0
 SMALL = (74, 45)
@@ -32,14 +30,9 @@ DOINGS = {
 
 
 @pytest.fixture
-def window(shown, preferences, wait, settled):
+def window(sample_window, preferences):
     preferences.window["theme"] = "light"
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1480, 900)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None, SECONDS)
-    settled(made, SECONDS)
-    return made
+    return sample_window(1480, 900)
 
 
 def steady(window, wait):

@@ -31,7 +31,6 @@ from regolith_studio.ui.dialogs.help import CitationLinks
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
-from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.views.view import WHEEL_ZOOM, ViewFrame
 from regolith_studio.ui.widgets.labels import CitingLabel
 
@@ -44,13 +43,10 @@ STEPS = 300
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1480, 900)
-    shown(made)
+def window(sample_window):
+    made = sample_window(1480, 900)
     made.activateWindow()
     assert QTest.qWaitForWindowActive(made, 5000)
-    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, 170.0)
     return made
 
 

@@ -9,7 +9,6 @@ import pytest
 import shiboken6
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.coarsening.progress import Move
@@ -19,40 +18,24 @@ from regolith_studio.jobs.lecture_jobs import AnnealingStep, DegreeStep, trace_d
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
-from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import PAGE, texts
 from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
 from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
 from regolith_studio.ui.widgets.plots.base import Plot
-from regolith_studio.ui.widgets.toast import Toast
 
 EGG = icosphere(3).moved(rotation=np.diag([30.0, 20.0, 45.0]))
 CIGAR = icosphere(2).moved(rotation=np.diag([10.0, 12.0, 60.0]))
 
 
 @pytest.fixture
-def page(shown, preferences, monkeypatch):
+def page(page_of, monkeypatch):
     coarse = partial(trace_degrees, level=3)
     monkeypatch.setattr("regolith_studio.ui.pages.lecture.page.trace_degrees", coarse)
     session = Session(InlineRunner())
     session.choose(n_facets=12, method="annealing", settings=(("iterations", 25),), l_max=4)
     session.adopt([Particle(name="egg", mesh=EGG), Particle(name="cigar", mesh=CIGAR)])
-    window = shown(QWidget())
-    toast = Toast(window)
-    bindings = Bindings(session, toast.problem, window)
-    commands = Commands(session, preferences, toast, window)
-    context = PageContext(
-        "lecture", session, bindings, preferences, toast, commands, "image", lambda _key: None
-    )
-    made = shown(PAGE.build(context))
-    made.resize(1200, 760)
-    yield made
-    bindings.disconnect_all()
-    made.on_close()
-    session.close()
+    return page_of(PAGE, 1200, 760, session)
 
 
 def actor(frame, name):

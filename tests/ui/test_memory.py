@@ -5,17 +5,12 @@ import weakref
 
 import pytest
 
-from regolith_studio.ui.startup import open_window
-
 DRAWN = 20
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(900, 640)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, 120.0)
+def window(sample_window):
+    made = sample_window(900, 640)
     made.session.choose(method="quadric", level=2)
     return made
 

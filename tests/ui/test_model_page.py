@@ -1,12 +1,10 @@
 """The page "Shape model": fit, drag the spectrum, draw, judge, hand over."""
 
-from contextlib import ExitStack
-
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
@@ -14,22 +12,16 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
-from regolith_studio.session.session import Session
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
-from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.controls import DistributionsPanel, distance_text
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.bars import SpectrumEditor
-from regolith_studio.ui.widgets.toast import Toast
 from tests.plugin import lunar_kinds
 from tests.ui.reading import english_left
 
@@ -42,36 +34,9 @@ def page(opened):
 
 
 @pytest.fixture
-def opened(shown, preferences):
+def opened(page_of):
     """Opens the page, in the language that is spoken then."""
-    with ExitStack() as ends:
-
-        def run():
-            made, end = _opened(shown, preferences)
-            ends.callback(end)
-            return made
-
-        yield run
-
-
-def _opened(shown, preferences):
-    session = Session(InlineRunner())
-    window = shown(QWidget())
-    toast = Toast(window)
-    bindings = Bindings(session, toast.problem, window)
-    commands = Commands(session, preferences, toast, window)
-    context = PageContext(
-        "model", session, bindings, preferences, toast, commands, "image", lambda _key: None
-    )
-    made = shown(PAGE.build(context))
-    made.resize(1100, 760)
-
-    def end():
-        bindings.disconnect_all()
-        made.on_close()
-        session.close()
-
-    return made, end
+    return lambda: page_of(PAGE, 1100, 760)
 
 
 def rough_sample(n=30, l_max=4):

@@ -21,19 +21,14 @@ from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 from regolith_studio.ui.result_card import ResultState
-from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.widgets.labels import short_number
 
 SECONDS = 120.0
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1200, 760)
-    shown(made)
-    wait(lambda: made.session.particles and all(e.descriptors for e in made.session.particles), SECONDS)
-    return made
+def window(sample_window):
+    return sample_window(1200, 760)
 
 
 @pytest.fixture

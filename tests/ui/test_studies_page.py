@@ -18,7 +18,6 @@ from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_va
 from regolith_studio.studies.sweeps import best_row, sufficient_facets
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.result_card import ResultRecord, ResultState
-from regolith_studio.ui.startup import open_window
 from regolith_studio.ui.theme import DARK
 
 SECONDS = 170.0
@@ -31,15 +30,11 @@ def paper_names():
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1100, 720)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
-    made.session.adopt([entry.particle for entry in made.session.particles[:2]])
-    made.session.choose(method="quadric", n_facets=12, level=2, l_max=4)
-    wait(lambda: not made.session.tasks, SECONDS)
-    return made
+def window(window, wait):
+    window.session.adopt([entry.particle for entry in window.session.particles[:2]])
+    window.session.choose(method="quadric", n_facets=12, level=2, l_max=4)
+    wait(lambda: not window.session.tasks, SECONDS)
+    return window
 
 
 def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):

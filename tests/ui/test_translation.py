@@ -20,12 +20,7 @@ from regolith_studio.messages import Message, join_messages
 from regolith_studio.resources import resource
 from regolith_studio.studies.loss_variants import losses
 from regolith_studio.ui.pages.sample.page import in_english
-from regolith_studio.ui.translation import (
-    LANGUAGES,
-    language_of,
-    tr,
-    translate,
-)
+from regolith_studio.ui.translation import LANGUAGES, language_of, tr, translate
 from tools.update_translations import PACKAGE, read_translations, update
 
 TRANSLATIONS = resource("translations", "de.ts")

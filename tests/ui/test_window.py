@@ -24,17 +24,6 @@ from regolith_studio.ui.theme import DARK, LIGHT, current_theme
 SECONDS = 120.0
 
 
-@pytest.fixture
-def window(shown, preferences, wait, settled):
-    """A window on the sample, with its first polyhedron."""
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1100, 720)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None, SECONDS)
-    settled(made, SECONDS)
-    return made
-
-
 def pictures(window):
     return [view.picture().astype(int) for view in window.page.three_views.views.values()]
 

@@ -8,14 +8,7 @@ from datetime import datetime
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import (
-    QApplication,
-    QMessageBox,
-    QPushButton,
-    QScrollArea,
-    QSplitter,
-    QWidget,
-)
+from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QScrollArea, QSplitter, QWidget
 
 from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.session.preferences import Preferences
@@ -40,12 +33,8 @@ def wait_for_ever():
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1200, 760)
-    shown(made)
-    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
-    return made
+def window(sample_window):
+    return sample_window(1200, 760)
 
 
 def answer(name):

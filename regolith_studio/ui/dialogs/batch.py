@@ -19,7 +19,6 @@ from PySide6.QtWidgets import (
     QLineEdit,
     QProgressBar,
     QPushButton,
-    QSpinBox,
     QWidget,
 )
 
@@ -34,6 +33,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import STRETCH, GrowingDialog, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, tr, tr_count
+from regolith_studio.ui.widgets.fields import choice, whole_field
 from regolith_studio.ui.widgets.labels import hint_label
 
 PLACES = {
@@ -126,12 +126,8 @@ class WorkersField(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.executor = named(QComboBox(), "batch_place", tr("Run on"))
-        for key, label in PLACES.items():
-            self.executor.addItem(tr(label), key)
-        self.count = named(QSpinBox(), "batch_workers", tr("Number of processes"))
-        self.count.setRange(1, 1024)
-        self.count.setValue(cores())
+        self.executor = choice("batch_place", tr("Run on"), PLACES)
+        self.count = whole_field("batch_workers", tr("Number of processes"), 1, 1024, cores())
         self.address = named(QLineEdit(), "batch_address", tr("Address of the scheduler"))
         self.address.setPlaceholderText(tr("tcp://HOST:8786 or tls://HOST:8786"))
         names = ", ".join(TLS_NAMES)

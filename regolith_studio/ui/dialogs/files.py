@@ -5,7 +5,6 @@ from pathlib import Path
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -21,9 +20,9 @@ from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.particles import has_tables
 from regolith_studio.readers.settings import UNITS, unit_factor
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import GrowingDialog, named, vbox
+from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, named, vbox
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.fields import DecimalField
+from regolith_studio.ui.widgets.fields import choice, decimal_field
 from regolith_studio.ui.widgets.labels import hint_label, short_number
 
 SETTING = "on_opening"
@@ -108,21 +107,15 @@ class UnitDialog(GrowingDialog):
             )
         )
         question.setWordWrap(True)
-        self.unit = named(QComboBox(), "unit", tr("Length unit"))
-        for key in UNITS:
-            self.unit.addItem(tr(LABELS.get(key, key)), key)
-        self.voxel = named(DecimalField(), "voxel_size", tr("Edge of a voxel in micrometres"))
-        self.voxel.setRange(0.001, 10_000.0)
-        self.voxel.setDecimals(3)
-        self.voxel.setSuffix(" µm")
-        self.voxel.setValue(2.3)
+        self.unit = choice("unit", tr("Length unit"), {key: LABELS.get(key, key) for key in UNITS})
+        spoken = tr("Edge of a voxel in micrometres")
+        self.voxel = decimal_field("voxel_size", spoken, 0.001, 10_000.0, 2.3, " µm", decimals=3)
         self._voxel_label = QLabel(tr("Edge of a voxel"))
         form = QFormLayout()
         form.addRow(tr("Unit"), self.unit)
         form.addRow(self._voxel_label, self.voxel)
-        self.convention = named(QComboBox(self), "convention", tr("Convention of coefficients"))
-        for convention, label in CONVENTIONS:
-            self.convention.addItem(tr(label), convention)
+        self.convention = choice("convention", tr("Convention of coefficients"), CONVENTIONS)
+        self.convention.setParent(self)
         if has_tables(paths):
             form.addRow(tr("Coefficients"), self.convention)
         else:
@@ -130,12 +123,8 @@ class UnitDialog(GrowingDialog):
         self.convention.activated.connect(
             lambda _: self.conventionChanged.emit(self.convention.currentData())
         )
-        buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
-        )
+        buttons = dialog_buttons(self, QDialogButtonBox.StandardButton.Open)
         self._open = buttons.button(QDialogButtonBox.StandardButton.Open)
-        buttons.accepted.connect(self.accept)
-        buttons.rejected.connect(self.reject)
         vbox(
             question,
             form,

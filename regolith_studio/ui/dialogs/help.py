@@ -20,7 +20,6 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import (
     QDialog,
-    QDialogButtonBox,
     QFrame,
     QHBoxLayout,
     QLabel,
@@ -33,7 +32,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.guide import chapter
 from regolith_studio.resources import guide_folder, resource
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import STRETCH, hbox, named, vbox
+from regolith_studio.ui.layout import STRETCH, dialog_buttons, hbox, named, vbox
 from regolith_studio.ui.theme import current_theme, pixmap
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import CITATION, heading, hint_label, with_subscripts
@@ -101,9 +100,7 @@ def guide_dialog(parent: QWidget, page: str = "") -> QDialog:
     contents, back = QPushButton(tr("Contents")), QPushButton(tr("Back"))
     contents.clicked.connect(lambda: text.show_chapter(CONTENTS))
     back.clicked.connect(text.backward)
-    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
-    buttons.rejected.connect(dialog.reject)
-    vbox((text, 1), hbox(contents, back, STRETCH, buttons), parent=dialog, margins=None)
+    vbox((text, 1), hbox(contents, back, STRETCH, dialog_buttons(dialog)), parent=dialog, margins=None)
     text.show_chapter(PAGES.get(page, CONTENTS))
     return dialog
 
@@ -188,9 +185,7 @@ def licence_of(name: str) -> str:
 
 
 def _closed(dialog: QDialog, content: QHBoxLayout) -> QDialog:
-    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
-    buttons.rejected.connect(dialog.reject)
-    vbox(content, buttons, parent=dialog, margins=None)
+    vbox(content, dialog_buttons(dialog), parent=dialog, margins=None)
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     return dialog
 

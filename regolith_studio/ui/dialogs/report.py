@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from PySide6.QtWidgets import QFormLayout, QLabel, QSpinBox, QWidget
+from PySide6.QtWidgets import QFormLayout, QLabel, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import presets
@@ -19,6 +19,7 @@ from regolith_studio.session.report.write import PAGE, SectionBegun
 from regolith_studio.ui.dialogs.batch import RunDialog
 from regolith_studio.ui.layout import named
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.widgets.fields import whole_field
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import hint_label
 
@@ -55,9 +56,7 @@ class ReportDialog(RunDialog):
                 "seed": choices.seed,
             }
         )
-        self.workers = named(QSpinBox(), "report_workers", tr("Number of processes"))
-        self.workers.setRange(1, 1024)
-        self.workers.setValue(cores())
+        self.workers = whole_field("report_workers", tr("Number of processes"), 1, 1024, cores())
         self.section = named(QLabel(), "report_section")
         self.section.hide()
         self.form.valueChanged.connect(self.evaluate)

@@ -1,8 +1,9 @@
 """Fields and sliders of numbers, with the decimal sign of the language, and combo boxes that elide."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from PySide6.QtCore import QEvent, QRect, QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QPaintEvent, QValidator
@@ -12,6 +13,7 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QLabel,
     QLineEdit,
+    QPushButton,
     QSlider,
     QSpinBox,
     QStyle,
@@ -20,6 +22,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.ui.layout import named
 from regolith_studio.ui.translation import tr
 
 MARGIN = 2
@@ -85,6 +88,14 @@ class ChoiceBox(ElidedComboBox):
             self.setCurrentIndex(self.findData(key))
 
 
+def choice(name: str, spoken: str, entries: Mapping[Any, str] | Iterable[tuple[Any, str]]) -> QComboBox:
+    """A combo box of values and their labels, which are translated, as wide as the longest."""
+    box = named(QComboBox(), name, spoken)
+    for key, label in entries.items() if isinstance(entries, Mapping) else entries:
+        box.addItem(tr(label), key)
+    return box
+
+
 def text_room(box: QComboBox) -> int:
     """Width of the label of a combo box in pixels."""
     option = QStyleOptionComboBox()
@@ -141,6 +152,26 @@ class NumbersLine(QLineEdit):
         if self.locale().decimalPoint() == ",":
             value = re.sub(r",\s*", "; ", value).replace(".", ",")
         self.setText(value)
+
+
+def whole_field(name: str, spoken: str, low: int, high: int, value: int | None = None) -> QSpinBox:
+    """A field of a whole number, by its object name and accessible name."""
+    field = named(QSpinBox(), name, spoken)
+    field.setRange(low, high)
+    field.setValue(low if value is None else value)
+    return field
+
+
+def decimal_field(
+    name: str, spoken: str, low: float, high: float, value: float, suffix: str = "", decimals: int = 2
+) -> DecimalField:
+    """A field of a number, as :func:`whole_field`."""
+    field = named(DecimalField(), name, spoken)
+    field.setDecimals(decimals)
+    field.setRange(low, high)
+    field.setSuffix(suffix)
+    field.setValue(value)
+    return field
 
 
 THROTTLE = 30
@@ -307,3 +338,67 @@ def align_labels(sliders: Iterable[NumberSlider], min_width: int = 0) -> None:
     widest = max((slider.label.sizeHint().width() for slider in each), default=0)
     for slider in each:
         slider.label.setFixedWidth(max(widest, min_width))
+
+
+class StepPlayer(QWidget):
+    """A slider over steps, and a button that plays them by a timer.
+
+    - ``name``: of the slider; ``spoken``: its accessible name.
+    - ``interval``: milliseconds between two steps.
+    - ``is_ready``: whether a step can be shown at once; while it plays, it waits for that.
+    """
+
+    stepChanged = Signal(int)  # noqa: N815
+
+    def __init__(
+        self, name: str, spoken: str, interval: int, is_ready: Callable[[int], bool] = lambda _step: True
+    ) -> None:
+        super().__init__()
+        self._is_ready = is_ready
+        self.slider = named(QSlider(Qt.Orientation.Horizontal), name, spoken)
+        self.play = QPushButton(tr("Play"))
+        self._timer = QTimer(self, interval=interval)
+        self._timer.timeout.connect(self._next)
+        self.play.clicked.connect(self.toggle)
+        self.slider.valueChanged.connect(self.stepChanged)
+
+    @property
+    def step(self) -> int:
+        return self.slider.value()
+
+    @property
+    def playing(self) -> bool:
+        return self._timer.isActive()
+
+    @property
+    def has_steps(self) -> bool:
+        """Whether there are several steps."""
+        return self.slider.maximum() > 0
+
+    def set_count(self, count: int, at: int = 0) -> None:
+        """Set the number of steps and the current one without emitting a signal."""
+        with QSignalBlocker(self.slider):
+            self.slider.setRange(0, max(0, count - 1))
+            self.slider.setValue(at)
+        for part in (self.play, self.slider):
+            part.setEnabled(count > 1)
+
+    def toggle(self) -> None:
+        """Play, from the beginning if the end is reached, or pause."""
+        if self.playing:
+            self.pause()
+        elif self.has_steps:
+            if self.step == self.slider.maximum():
+                self.slider.setValue(0)
+            self.play.setText(tr("Pause"))
+            self._timer.start()
+
+    def pause(self) -> None:
+        self._timer.stop()
+        self.play.setText(tr("Play"))
+
+    def _next(self) -> None:
+        if self.step >= self.slider.maximum():
+            self.pause()
+        elif self._is_ready(self.step + 1):
+            self.slider.setValue(self.step + 1)

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.readers.particles import FileProblem
-from regolith_studio.ui.layout import hbox, named
+from regolith_studio.ui.layout import dialog_buttons, hbox, named
 from regolith_studio.ui.translation import inert, tr, translate
 
 NOTE_SECONDS = 6
@@ -110,11 +110,10 @@ def show_details(parent: QWidget, sentence: str, details: str) -> None:
     first.setWordWrap(True)
     text = named(QPlainTextEdit(details), spoken=tr("Details"))
     text.setReadOnly(True)
-    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
+    buttons = dialog_buttons(dialog)
     copy = buttons.addButton(tr("Copy report"), QDialogButtonBox.ButtonRole.ActionRole)
     copy.clicked.connect(text.selectAll)
     copy.clicked.connect(text.copy)
-    buttons.rejected.connect(dialog.reject)
     for widget in (first, text, buttons):
         layout.addWidget(widget)
     dialog.exec()

@@ -2,20 +2,15 @@
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
-from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.startup import MainThreadInvoker
-from regolith_studio.ui.widgets.toast import Toast
 from tests.dem.conftest import box_dataset
 from tests.dem.packings import cone
 
@@ -31,23 +26,12 @@ def threads(app):  # noqa: ARG001
 
 
 @pytest.fixture
-def page(shown, preferences, tmp_path, request):
+def page(page_of, tmp_path, request):
     threaded = "threads" in request.fixturenames
-    session = Session(request.getfixturevalue("threads") if threaded else InlineRunner())
-    window = shown(QWidget())
-    toast = Toast(window)
-    bindings = Bindings(session, toast.problem, window)
-    commands = Commands(session, preferences, toast, window)
-    context = PageContext(
-        "repose", session, bindings, preferences, toast, commands, "image", lambda _key: None
-    )
-    made = shown(PAGE.build(context))
-    made.resize(1200, 800)
+    session = Session(request.getfixturevalue("threads")) if threaded else None
+    made = page_of(PAGE, 1200, 800, session)
     made.set_runs_folder(tmp_path / "runs")
-    yield made
-    bindings.disconnect_all()
-    made.on_close()
-    session.close()
+    return made
 
 
 @pytest.fixture

@@ -52,7 +52,7 @@ def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait, monkeypatch
     assert page.player.pile.phase == "fill"
     page.player.toggle()
     wait(lambda: page.player.slider.value() >= 2)
-    page.player.stop()
+    page.player.pause()
     page.player.slider.setValue(page.player.slider.maximum())
     np.testing.assert_array_equal(page.player.pile.points, last)
     assert not page.busy()

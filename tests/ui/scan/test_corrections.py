@@ -9,11 +9,7 @@ from PySide6.QtWidgets import QFileDialog
 from regolith_studio.imaging.label_table import voxel_inside
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import box_between
-from regolith_studio.jobs.extraction_settings import (
-    VolumeInput,
-    read_grain_settings,
-    read_objects,
-)
+from regolith_studio.jobs.extraction_settings import VolumeInput, read_grain_settings, read_objects
 from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.readers.volumes.read import read_volume
 from tests.ui.scan.mouse import click_voxel, paint, press

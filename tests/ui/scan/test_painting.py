@@ -8,10 +8,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.imaging.segmentation.strokes import painted_rows
-from regolith_studio.jobs.extraction_settings import (
-    VolumeInput,
-    read_classifier,
-)
+from regolith_studio.jobs.extraction_settings import VolumeInput, read_classifier
 from regolith_studio.readers.sandbox.parent import sha256_of
 from tests.ui.scan.mouse import paint, press
 

@@ -10,11 +10,7 @@ from PySide6.QtWidgets import QDialogButtonBox, QFileDialog
 
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import preview, segment
-from regolith_studio.jobs.extraction_settings import (
-    GrainSettings,
-    VolumeInput,
-    read_grain_settings,
-)
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.readers.volumes.read import read_volume
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from tests.ui.scan.mouse import grains_seen, press

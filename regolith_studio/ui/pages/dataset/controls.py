@@ -9,14 +9,12 @@ from platformdirs import user_data_path
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices, QIcon
 from PySide6.QtWidgets import (
-    QComboBox,
     QFileDialog,
     QLineEdit,
     QPushButton,
     QScrollArea,
     QTreeWidget,
     QTreeWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -36,7 +34,7 @@ from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, tr, tr_count
-from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec
+from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec, choice
 from regolith_studio.ui.widgets.labels import ElidedLabel, FixedHeightText, heading, hint_label
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
@@ -76,16 +74,12 @@ class RepresentativesPanel(QWidget):
         self.population = hint_label()
         self.start = QPushButton(tr("Find representatives"))
         self.count = NumberSlider(COUNT)
-        self.which = named(QComboBox(), "dataset_which", tr("Particles of the dataset"))
-        self.which.addItem(tr("Representatives"), True)
-        self.which.addItem(tr("All open particles"), False)
-        self.weighting = QComboBox()
-        for key, label in WEIGHTINGS.items():
-            self.weighting.addItem(tr(label), key)
+        kinds = {True: N_("Representatives"), False: N_("All open particles")}
+        self.which = choice("dataset_which", tr("Particles of the dataset"), kinds)
+        spoken = tr("Weighting of the representatives")
+        self.weighting = choice("dataset_weighting", spoken, WEIGHTINGS)
         self.start.setObjectName("dataset_find")
         self.count.field.setObjectName("dataset_count")
-        self.weighting.setObjectName("dataset_weighting")
-        self.weighting.setAccessibleName(tr("Weighting of the representatives"))
         vbox(
             heading(tr("1  Particles")),
             FixedHeightText((self.population,)),
@@ -170,19 +164,12 @@ class SizesPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("dataset_size_kinds")
-        self.kind, self.numbers = QComboBox(), NumbersLine()
+        labels = {key: label for key, (label, _) in SIZES.items()}
+        self.kind = choice("dataset_size_kind", tr("Kind of size distribution"), labels)
+        self.numbers = named(NumbersLine(), "dataset_size_numbers", tr("Numbers of the size distribution"))
         self.hint, self.problem = hint_label(), hint_label(role="warning")
-        for key, (label, _) in SIZES.items():
-            self.kind.addItem(tr(label), key)
-        self.kind.setObjectName("dataset_size_kind")
-        self.kind.setAccessibleName(tr("Kind of size distribution"))
-        self.numbers.setObjectName("dataset_size_numbers")
-        self.numbers.setAccessibleName(tr("Numbers of the size distribution"))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
         texts = FixedHeightText((self.hint, self.problem))
-        for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, texts):
-            layout.addWidget(widget)
+        vbox(heading(tr("2  Sizes")), self.kind, self.numbers, texts, parent=self)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
         self.numbers.textEdited.connect(lambda _: self._emit_sizes())
         self._show_kind()
@@ -247,16 +234,8 @@ class FolderPanel(QWidget):
         self.name = named(QLineEdit("regolith"), "dataset_name", tr("Name of the dataset"))
         self.shapes, self.state = hint_label(), hint_label()
         self.open = named(QPushButton(tr("Open a dataset …")), "dataset_open")
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        asked, there = (
-            FixedHeightText((self.shapes,)),
-            FixedHeightText((self.state,)),
-        )
-        for widget in (heading(tr("3  Dataset")), self.name, asked):
-            layout.addWidget(widget)
-        layout.addWidget(self.open)
-        layout.addWidget(there)
+        asked, there = FixedHeightText((self.shapes,)), FixedHeightText((self.state,))
+        vbox(heading(tr("3  Dataset")), self.name, asked, self.open, there, parent=self)
         self.open.clicked.connect(self.openRequested)
         self.show_dataset("")
 

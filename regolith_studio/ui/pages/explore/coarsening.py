@@ -5,14 +5,7 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import (
-    QFormLayout,
-    QPushButton,
-    QSpinBox,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QFormLayout, QPushButton, QSpinBox, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.settings import CoarseningSettings

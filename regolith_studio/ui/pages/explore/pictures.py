@@ -5,15 +5,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QDialog,
-    QDialogButtonBox,
-    QFileDialog,
-    QFormLayout,
-    QSpinBox,
-    QWidget,
-)
+from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QFileDialog, QFormLayout, QWidget
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.atomic import write_bytes
@@ -22,11 +14,11 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene.animation import animate, draw_figure, turn
 from regolith_studio.scene.figure import view_titles
-from regolith_studio.ui.layout import named
+from regolith_studio.ui.layout import dialog_buttons, named
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
-from regolith_studio.ui.widgets.fields import ChoiceBox
+from regolith_studio.ui.widgets.fields import ChoiceBox, whole_field
 from regolith_studio.ui.widgets.plots.export import png_of_image
 
 MAX_SCALE = 6
@@ -145,20 +137,13 @@ class PictureDialog(QDialog):
         self.setObjectName("picture_dialog")
         self.kind = ChoiceBox("picture_kind", tr("Kind of picture"), KINDS)
         self.kind.setMinimumContentsLength(30)
-        self.scale = named(QSpinBox(), "picture_scale", tr("Scale of the picture"))
-        self.scale.setRange(1, MAX_SCALE)
-        self.scale.setValue(2)
+        self.scale = whole_field("picture_scale", tr("Scale of the picture"), 1, MAX_SCALE, 2)
         self.transparent = named(QCheckBox(tr("Transparent background")), "picture_transparent")
-        buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Save | QDialogButtonBox.StandardButton.Cancel, parent=self
-        )
-        buttons.accepted.connect(self.accept)
-        buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
         form.addRow(tr("Picture"), self.kind)
         form.addRow(tr("Scale"), self.scale)
         form.addRow("", self.transparent)
-        form.addRow(buttons)
+        form.addRow(dialog_buttons(self, QDialogButtonBox.StandardButton.Save))
 
     def value(self) -> tuple[str, int, bool]:
         """Kind of picture, scale, and whether the background is transparent."""

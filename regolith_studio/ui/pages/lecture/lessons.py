@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
-from PySide6.QtWidgets import QLabel, QPushButton, QSlider, QSplitter, QWidget
+from PySide6.QtCore import QEvent, Signal
+from PySide6.QtWidgets import QLabel, QPushButton, QSplitter, QWidget
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.arrays import FloatArray
@@ -23,7 +23,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, tr, tr_count
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
-from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider, NumberSpec, StepPlayer
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.plots.bars import SpectrumEditor
@@ -41,7 +41,7 @@ SPEED = NumberSpec(
 USUAL_SPEED = 2.0
 
 
-class PlaybackBar(QWidget):
+class PlaybackBar(StepPlayer):
     """Selects one of several steps, manually or by a timer.
 
     - ``name``: prefix of the object names.
@@ -49,61 +49,33 @@ class PlaybackBar(QWidget):
     - ``is_ready``: whether a step can be shown at once; while it plays, it waits for that.
     """
 
-    stepChanged = Signal(int)  # noqa: N815
-
     def __init__(self, name: str, noun: str, is_ready: Callable[[int], bool] = lambda _step: True) -> None:
-        super().__init__()
-        self._is_ready = is_ready
         self._noun = noun
-        self.back, self.play, self.forward = QPushButton("◀"), QPushButton(tr("Play")), QPushButton("▶")
-        self.first = QPushButton("|◀")
+        super().__init__(f"{name}_step", tr("Number of the {noun}", noun=tr(noun)), 0, is_ready)
+        self.first, self.back, self.forward = QPushButton("|◀"), QPushButton("◀"), QPushButton("▶")
         for button, key, words in (
             (self.first, "first", tr("To the beginning")),
             (self.back, "back", tr("One step back")),
             (self.play, "play", tr("Play or pause")),
             (self.forward, "forward", tr("One step")),
         ):
-            button.setObjectName(f"{name}_{key}")
-            button.setAccessibleName(words)
-            button.setToolTip(words)
-        self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.slider.setObjectName(f"{name}_step")
-        self.slider.setAccessibleName(tr("Number of the {noun}", noun=tr(noun)))
+            named(button, f"{name}_{key}", words, words)
         self.speed = named(NumberSlider(SPEED), f"{name}_speed")
         self.speed.setMaximumWidth(300)
         self.clock = QLabel()
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._next)
         self._arrange()
         self.first.clicked.connect(lambda: self.go(0))
         self.back.clicked.connect(lambda: self.go(self.step - 1))
         self.forward.clicked.connect(lambda: self.go(self.step + 1))
-        self.play.clicked.connect(self.toggle)
-        self.slider.valueChanged.connect(self._changed)
-        self.speed.valueChanged.connect(lambda _: self._timer.setInterval(self._interval()))
+        self.stepChanged.connect(lambda _: self._show_position())
+        self.speed.valueChanged.connect(lambda _: self._set_speed())
         self.speed.setValue(USUAL_SPEED)
+        self._set_speed()
         self.set_count(0)
 
-    @property
-    def step(self) -> int:
-        """The current step."""
-        return self.slider.value()
-
-    @property
-    def playing(self) -> bool:
-        return self._timer.isActive()
-
-    @property
-    def has_steps(self) -> bool:
-        """Whether there are several steps."""
-        return self.slider.maximum() > 0
-
     def set_count(self, count: int, at: int = 0) -> None:
-        """Set the number of steps and the current one without emitting a signal."""
-        with QSignalBlocker(self.slider):
-            self.slider.setRange(0, max(0, count - 1))
-            self.slider.setValue(at)
-        for part in (self.first, self.back, self.play, self.forward, self.slider):
+        super().set_count(count, at)
+        for part in (self.first, self.back, self.forward):
             part.setEnabled(count > 1)
         self._reserve_width()
         self._show_position()
@@ -116,32 +88,8 @@ class PlaybackBar(QWidget):
         self.pause()
         self.slider.setValue(step)
 
-    def toggle(self) -> None:
-        """Play, from the beginning if the end is reached, or pause."""
-        if self.playing:
-            self.pause()
-        elif self.has_steps:
-            if self.step == self.slider.maximum():
-                self.slider.setValue(0)
-            self.play.setText(tr("Pause"))
-            self._timer.start(self._interval())
-
-    def pause(self) -> None:
-        self._timer.stop()
-        self.play.setText(tr("Play"))
-
-    def _interval(self) -> int:
-        return round(1000 / max(float(self.speed.value()), 0.1))
-
-    def _next(self) -> None:
-        if self.step >= self.slider.maximum():
-            self.pause()
-        elif self._is_ready(self.step + 1):
-            self.slider.setValue(self.step + 1)
-
-    def _changed(self, step: int) -> None:
-        self._show_position()
-        self.stepChanged.emit(step)
+    def _set_speed(self) -> None:
+        self._timer.setInterval(round(1000 / max(float(self.speed.value()), 0.1)))
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

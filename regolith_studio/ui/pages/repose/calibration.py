@@ -28,20 +28,15 @@ from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.studies.calibration import CONFIDENCE, density_of
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
-from regolith_studio.studies.repose_calibration import (
-    ANGLE,
-    ReposeCalibration,
-    angle_target,
-    density_target,
-)
-from regolith_studio.ui.layout import equal_parts, named, vbox
+from regolith_studio.studies.repose_calibration import ANGLE, ReposeCalibration, angle_target, density_target
+from regolith_studio.ui.layout import equal_parts, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.runs import explanation, interval_bars
 from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.result_card import ResultRecord, ResultView, RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
-from regolith_studio.ui.widgets.fields import DecimalField, NumbersLine
+from regolith_studio.ui.widgets.fields import DecimalField, NumbersLine, choice, decimal_field, whole_field
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import TextTable
 
@@ -96,18 +91,8 @@ class RunPanel(QWidget):
                 _restore(field, state[name])
 
 
-def keys_box(entries: Mapping[str, tuple[str, str]], name: str, spoken: str) -> QComboBox:
-    box = named(QComboBox(), name, spoken)
-    for key, (label, _) in entries.items():
-        box.addItem(tr(label), key)
-    return box
-
-
-def count_box(name: str, spoken: str, maximum: int) -> QSpinBox:
-    """A number from 1 on."""
-    box = named(QSpinBox(), name, spoken)
-    box.setRange(1, maximum)
-    return box
+def _labels(entries: Mapping[str, tuple[str, str]]) -> dict[str, str]:
+    return {key: label for key, (label, _) in entries.items()}
 
 
 def _value(field: Field) -> Any:
@@ -142,19 +127,22 @@ class CalibrationPanel(RunPanel):
 
     def __init__(self) -> None:
         self._calibration: ReposeCalibration | None = None
-        self.angle = _number("repose_wanted_angle", tr("Wanted angle of repose"), 1.0, 80.0, 30.0, " °")
-        self.error = _number(
+        self.angle = decimal_field("repose_wanted_angle", tr("Wanted angle of repose"), 1.0, 80.0, 30.0, " °")
+        self.error = decimal_field(
             "repose_angle_error", tr("Standard error of the wanted angle"), 0.1, 45.0, 1.0, " °"
         )
-        self.density = _number("repose_wanted_density", tr("Wanted bulk density"), 0.0, 30.0, 0.0, " g/cm³")
+        self.density = decimal_field(
+            "repose_wanted_density", tr("Wanted bulk density"), 0.0, 30.0, 0.0, " g/cm³"
+        )
+        for field in (self.angle, self.error, self.density):
+            field.setSingleStep(0.1)
         self.density.setSpecialValueText(tr("not given"))
         self.density.setToolTip(tr("Of the filled cylinder; its standard error is taken as 1 %"))
-        self.key = keys_box(PARAMETERS, "repose_calibration_key", tr("Parameter"))
+        self.key = choice("repose_calibration_key", tr("Parameter"), _labels(PARAMETERS))
         self.range = NumbersLine(PARAMETERS["static_friction"][1])
         self.range.setObjectName("repose_calibration_range")
         self.range.setAccessibleName(tr("Lowest and highest value, with a comma between them"))
-        self.runs = count_box("repose_calibration_runs", tr("Number of runs"), 99)
-        self.runs.setValue(12)
+        self.runs = whole_field("repose_calibration_runs", tr("Number of runs"), 1, 99, 12)
         self.prediction = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
         self.posterior = CurvePlot(
             tr("Static friction"),
@@ -257,15 +245,6 @@ class CalibrationController:
         )
 
 
-def _number(name: str, accessible: str, low: float, high: float, value: float, unit: str) -> DecimalField:
-    field = named(DecimalField(), name, accessible)
-    field.setRange(low, high)
-    field.setSingleStep(0.1)
-    field.setSuffix(unit)
-    field.setValue(value)
-    return field
-
-
 def _record(calibration: ReposeCalibration) -> ResultRecord:
     """What is known of the parameter, the next run, and warnings."""
     runs = len(calibration.runs)
@@ -347,12 +326,13 @@ class StudyPanel(RunPanel):
 
     def __init__(self) -> None:
         self._study: ReposeStudy | None = None
-        self.key = keys_box(VARIED, "repose_study_key", tr("Varied quantity"))
+        self.key = choice("repose_study_key", tr("Varied quantity"), _labels(VARIED))
         self.values = NumbersLine(VARIED["static_friction"][1])
         self.values.setObjectName("repose_study_values")
         self.values.setAccessibleName(tr("Values, with commas between them"))
-        self.repeats = count_box("repose_study_repeats", tr("Runs per value, with different seeds"), 100)
-        self.workers = count_box("repose_study_workers", tr("Runs at the same time"), cores())
+        spoken = tr("Runs per value, with different seeds")
+        self.repeats = whole_field("repose_study_repeats", spoken, 1, 100)
+        self.workers = whole_field("repose_study_workers", tr("Runs at the same time"), 1, cores())
         self.workers.setToolTip(tr("Each run takes one core, and the memory of a run"))
         self.table = TextTable("repose_study_runs", tr("Runs of the study"), [tr(each) for each in HEADINGS])
         self.plot = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
@@ -413,8 +393,8 @@ class StudyPanel(RunPanel):
         ]
         self.plot.set_curves(
             [
-                PlotCurve(tr("mean"), theme.fit, *_columns(means), line=numeric),
-                PlotCurve(tr("run"), theme.polyhedron, *_columns(found), markers=True, line=False),
+                PlotCurve(tr("mean"), theme.fit, *_numbers_of(means), line=numeric),
+                PlotCurve(tr("run"), theme.polyhedron, *_numbers_of(found), markers=True, line=False),
                 interval_bars(theme.polyhedron, intervals),
             ]
             if found
@@ -482,10 +462,6 @@ class StudyController:
         particles = tuple(entry.particle for entry in session.particles)
         coarsening = session.choices.coarsening_request
         return ReposeStudyRequest(key, values, request, None, repeats, particles, coarsening, workers)
-
-
-def _columns(points: list[tuple[float, float]]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    return tuple(x for x, _ in points), tuple(y for _, y in points)
 
 
 def _cells(run: ReposeStudyRun) -> tuple[str, ...]:

@@ -29,13 +29,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.repose_jobs import (
-    ReposeRequest,
-    ReposeRun,
-    preview_repose,
-    remeasure,
-    repose_steps,
-)
+from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, preview_repose, remeasure, repose_steps
 from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
 from regolith_studio.studies.repose import ReposeStudyRun
@@ -58,11 +52,7 @@ from regolith_studio.ui.pages.repose.heap import (
 )
 from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.positions import choose_positions, export_measurement, read_pile
-from regolith_studio.ui.pages.repose.runs import (
-    RunsPanel,
-    checks_text,
-    duration_text,
-)
+from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
 from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.translation import tr, translate
@@ -180,7 +170,7 @@ class ReposePage(PageWidget):
         self.runs.select(folder)
 
     def on_hide(self) -> None:
-        self.player.stop()
+        self.player.pause()
 
     def on_close(self) -> None:
         self._later.stop()

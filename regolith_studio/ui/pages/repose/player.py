@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QSignalBlocker, Qt, QTimer
-from PySide6.QtWidgets import QLabel, QPushButton, QSlider, QWidget
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QLabel
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.run_io import read_final_state
@@ -19,6 +19,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
+from regolith_studio.ui.widgets.fields import StepPlayer
 
 LOW_SIDE = Direction("", (0.35, -1.0, 0.22), (0.0, 0.0, 1.0))
 """Flanks and their slope are seen from a low side."""
@@ -32,11 +33,11 @@ SETTLE = 300
 """Milliseconds from the last movement of a large heap to its picture with all details."""
 
 
-class RunPlayer(QWidget):
+class RunPlayer(StepPlayer):
     """Shows piles and replays runs."""
 
     def __init__(self, views: str) -> None:
-        super().__init__()
+        super().__init__("repose_time", tr("Time of the run"), FRAME)
         self.frame = ViewFrame(
             make_view(views, current_theme().surroundings), "repose_view", colour="polyhedron"
         )
@@ -52,18 +53,13 @@ class RunPlayer(QWidget):
         self._settle = QTimer(self, singleShot=True, interval=SETTLE)
         self._settle.timeout.connect(self._draw_settled)
         self.frame.view.when_moved(lambda _: self._draw_coarsely())
-        self.slider = named(QSlider(Qt.Orientation.Horizontal), "repose_time", tr("Time of the run"))
-        self.button = named(QPushButton(tr("Play")), "repose_play")
+        self.play.setObjectName("repose_play")
         self.clock = named(QLabel(), role="hint")
         self.clock.setMinimumWidth(110)
-        self._timer = QTimer(self)
-        self._timer.setInterval(FRAME)
-        self._timer.timeout.connect(self._next)
-        self.button.clicked.connect(self.toggle)
-        self.slider.valueChanged.connect(self._show_file)
+        self.stepChanged.connect(self._show_file)
         vbox(
             (self.frame, 1),
-            hbox(self.button, (self.slider, 1), self.clock, margins=(8, 2, 8, 4)),
+            hbox(self.play, (self.slider, 1), self.clock, margins=(8, 2, 8, 4)),
             parent=self,
         )
         self.frame.set_texts(tr("Lifting cylinder"), tr("Choose a dataset to see the cylinder filled."))
@@ -100,7 +96,7 @@ class RunPlayer(QWidget):
 
     def show_moment(self, pile: ParticleState, title: str, detail: str = "") -> None:
         """Show a state that is not in a file: a preview, or the latest of a running simulation."""
-        self.stop()
+        self.pause()
         self._set_files([])
         self.frame.set_texts(title, detail)
         top = float(pile.points[:, 2].max(initial=0.0))
@@ -110,7 +106,7 @@ class RunPlayer(QWidget):
 
     def show_run(self, files: Sequence[Path], title: str, detail: str = "") -> None:
         """Set the snapshots of a run and show the last one."""
-        self.stop()
+        self.pause()
         self.frame.set_texts(title, detail)
         self._set_files(list(files))
         if files:
@@ -123,44 +119,20 @@ class RunPlayer(QWidget):
         else:
             report(tr("There is no run to play: run a test or choose a run in the list."))
 
-    def toggle(self) -> None:
-        """Play from the beginning, or from here, or pause."""
-        if self._timer.isActive():
-            self.stop()
-        elif self._files:
-            if self.slider.value() == self.slider.maximum():
-                self.slider.setValue(0)
-            self.button.setText(tr("Pause"))
-            self._timer.start()
-
-    def stop(self) -> None:
-        self._timer.stop()
-        self.button.setText(tr("Play"))
-
     def release(self) -> None:
-        self.stop()
+        self.pause()
         self._settle.stop()
         self.frame.view.release()
 
     def _set_files(self, files: list[Path]) -> None:
         self._files = files
-        with QSignalBlocker(self.slider):
-            self.slider.setRange(0, max(0, len(files) - 1))
-            self.slider.setValue(max(0, len(files) - 1))
-        self.slider.setEnabled(len(files) > 1)
-        self.button.setEnabled(len(files) > 1)
-
-    def _next(self) -> None:
-        if self.slider.value() >= self.slider.maximum():
-            self.stop()
-        else:
-            self.slider.setValue(self.slider.value() + 1)
+        self.set_count(len(files), max(0, len(files) - 1))
 
     def _show_file(self, number: int) -> None:
         try:
             self._show(read_final_state(self._files[number]))
         except FileError as error:
-            self.stop()
+            self.pause()
             self.clock.setText(inert(str(error)))
 
     def _show(self, pile: ParticleState) -> None:

@@ -26,7 +26,7 @@ from regolith_studio.readers.positions import ParticlePositions, asks_for_column
 from regolith_studio.readers.settings import unit_factor
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
-from regolith_studio.ui.layout import GrowingDialog, vbox
+from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fields import DecimalField
 from regolith_studio.ui.widgets.labels import hint_label, short_number
@@ -77,11 +77,7 @@ class PositionsDialog(GrowingDialog):
             field.setVisible(needed)
             if needed:
                 form.addRow(label, field)
-        buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
-        )
-        buttons.accepted.connect(self.accept)
-        buttons.rejected.connect(self.reject)
+        buttons = dialog_buttons(self, QDialogButtonBox.StandardButton.Open)
         vbox(form, self.size_note, buttons, parent=self, margins=None)
         self.unit.currentIndexChanged.connect(self._show_size)
         self.columns.textChanged.connect(self._offer_diameter)

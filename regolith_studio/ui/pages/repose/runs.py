@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QWidget
+from PySide6.QtWidgets import QWidget
 
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
-from regolith_studio.ui.layout import named, vbox
+from regolith_studio.ui.layout import vbox
 from regolith_studio.ui.translation import localized, number_text, tr, translate
+from regolith_studio.ui.widgets.fields import choice
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import TextTable
 
@@ -56,9 +57,8 @@ class RunsPanel(QWidget):
         super().__init__()
         self._runs: list[RunSummary] = []
         self.table = TextTable("repose_runs", tr("Runs"), [tr(each) for each in HEADINGS])
-        self.against = named(QComboBox(), "repose_against", tr("Compare the angle against"))
-        for label, path in AGAINST.items():
-            self.against.addItem(tr(label), path)
+        entries = [(path, label) for label, path in AGAINST.items()]
+        self.against = choice("repose_against", tr("Compare the angle against"), entries)
         self.plot = CurvePlot(
             tr("Static friction"), tr("Angle [°]"), tr("Runs that ended in a pile are compared here.")
         )

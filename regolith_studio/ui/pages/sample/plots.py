@@ -30,7 +30,7 @@ from regolith_studio.ui.layout import control_row, named, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
-from regolith_studio.ui.widgets.fields import ElidedComboBox
+from regolith_studio.ui.widgets.fields import ElidedComboBox, choice
 from regolith_studio.ui.widgets.labels import rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -236,9 +236,8 @@ class StatisticsPanel(QWidget):
             if not row.costly:
                 self.key.addItem(tr(row.label), key)
                 self.key.setItemData(self.key.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
-        self.weighting = named(QComboBox(), "statistics_weighting", tr("Weighting of the statistics"))
-        for weighting in WEIGHTINGS:
-            self.weighting.addItem(tr(_WEIGHTING_LABELS[weighting]), weighting)
+        weightings = {key: _WEIGHTING_LABELS[key] for key in WEIGHTINGS}
+        self.weighting = choice("statistics_weighting", tr("Weighting of the statistics"), weightings)
         self.border = QCheckBox(tr("correct for border grains"))
         self.border.setObjectName("statistics_border")
         self.border.setToolTip(

@@ -6,15 +6,7 @@ from typing import Any, cast
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QStandardItemModel
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QComboBox,
-    QHBoxLayout,
-    QPushButton,
-    QSizePolicy,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
@@ -265,14 +257,6 @@ class SegmentationControls(QWidget):
 
 def button(name: str, words: str, tip: str) -> QPushButton:
     return named(QPushButton(words), name, tip=tip)
-
-
-def choice(name: str, words: str, rows: Sequence[tuple[Any, str]]) -> QComboBox:
-    """A combo box of values and labels; `words` is the accessible name. Translates the labels only."""
-    box = named(QComboBox(), name, words)
-    for key, label in rows:
-        box.addItem(tr(label), key)
-    return box
 
 
 _DENSEST, _LARGEST = 0.7, 0.4

@@ -32,9 +32,9 @@ from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
 from regolith_studio.ui.layout import named, vbox
-from regolith_studio.ui.pages.scan.controls import button, choice
+from regolith_studio.ui.pages.scan.controls import button
 from regolith_studio.ui.translation import number_text, tr
-from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec
+from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec, choice
 from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.table import TextTable
 

@@ -5,24 +5,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtWidgets import (
-    QCheckBox,
-    QDialog,
-    QDialogButtonBox,
-    QFormLayout,
-    QLabel,
-    QSpinBox,
-    QWidget,
-)
+from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QWidget
 
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
-from regolith_studio.ui.layout import hbox, named, vbox
-from regolith_studio.ui.pages.scan.controls import choice
+from regolith_studio.ui.layout import dialog_buttons, hbox, named, vbox
 from regolith_studio.ui.translation import inert, tr, translate
-from regolith_studio.ui.widgets.fields import DecimalField
+from regolith_studio.ui.widgets.fields import choice, decimal_field, whole_field
 from regolith_studio.ui.widgets.labels import hint_label
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
@@ -39,6 +30,7 @@ KINDS = (
     ("labels", N_("Labels of grains")),
 )
 UNITS = (("um", "µm"), ("mm", "mm"), ("nm", "nm"), ("cm", "cm"), ("m", "m"))
+MOST = 1_000_000_000
 _TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64")
 
 
@@ -66,23 +58,31 @@ class VolumeDialog(QDialog):
         self.setObjectName("volume_dialog")
         self._path, self._header, self._layout, self._last_size = path, header, layout, last
         self.edges = [
-            _number(f"voxel_{axis}", tr("Edge of a voxel along {axis}", axis=axis)) for axis in "xyz"
+            decimal_field(
+                f"voxel_{axis}",
+                tr("Edge of a voxel along {axis}", axis=axis),
+                0.0001,
+                100_000.0,
+                1.0,
+                decimals=4,
+            )
+            for axis in "xyz"
         ]
         self.unit = choice("voxel_unit", tr("Unit of the voxel size"), UNITS)
         self.dataset = choice("dataset", tr("Volume in the file"), ())
-        self.shape = [_count(f"shape_{axis}", tr("Voxels along {axis}", axis=axis)) for axis in "xyz"]
+        self.shape = [
+            whole_field(f"shape_{axis}", tr("Voxels along {axis}", axis=axis), 1, MOST) for axis in "xyz"
+        ]
         self.dtype = choice("dtype", tr("Type of a voxel"), [(name, name) for name in _TYPES])
         self.order = choice("byte_order", tr("Byte order"), ORDERS)
-        self.offset = _count("offset", tr("Bytes before the first voxel"), least=0)
+        self.offset = whole_field("offset", tr("Bytes before the first voxel"), 0, MOST)
         self.kind = choice("kind", tr("Content of the volume"), KINDS)
         self.axes = choice("axes", tr("Order of the array's axes"), AXES)
         self._gaps = gaps or {}
         self.allow_gaps = named(QCheckBox(), "allow_gaps")
         self._said = tr("A raw file has no header. Enter the number of voxels and their type.")
         self.assessment, self.facts = hint_label(), hint_label()
-        self._buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
-        )
+        self._buttons = dialog_buttons(self, QDialogButtonBox.StandardButton.Open)
         self._arrange()
         self._suggest()
         self.facts.setText(self._facts())
@@ -205,8 +205,6 @@ class VolumeDialog(QDialog):
         if self._gaps:
             form.addRow(self.allow_gaps)
         layout = vbox(QLabel(inert(self._path.name)), self.facts, form, parent=self, margins=None)
-        self._buttons.accepted.connect(self.accept)
-        self._buttons.rejected.connect(self.reject)
         layout.addWidget(self._buttons)
 
     def _facts(self) -> str:
@@ -225,19 +223,6 @@ class VolumeDialog(QDialog):
 def needs_asking(header: VolumeHeader) -> bool:
     """Whether a file lacks the voxel size, its unit, or the selection of a volume."""
     return header.voxel_size is None or header.unit is None or len(header.datasets) > 1
-
-
-def _number(name: str, words: str) -> DecimalField:
-    field = named(DecimalField(), name, words)
-    field.setDecimals(4)
-    field.setRange(0.0001, 100_000.0)
-    return field
-
-
-def _count(name: str, words: str, least: int = 1) -> QSpinBox:
-    field = named(QSpinBox(), name, words)
-    field.setRange(least, 1_000_000_000)
-    return field
 
 
 def _row(parts: Sequence[QWidget]) -> QWidget:

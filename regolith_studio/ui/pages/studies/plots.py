@@ -24,11 +24,11 @@ from regolith_studio.studies.sweeps import (
     format_difference,
     significant,
 )
-from regolith_studio.ui.layout import control_row, left_aligned, named
+from regolith_studio.ui.layout import control_row, left_aligned
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
-from regolith_studio.ui.widgets.fields import DecimalField
+from regolith_studio.ui.widgets.fields import decimal_field
 from regolith_studio.ui.widgets.heat_table import (
     HeatTable,
     centred_hint,
@@ -272,11 +272,8 @@ class LmaxStudyPanel(QWidget):
         self.setObjectName("lmax_study")
         self.plot = BandPlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(LMAX_PLACEHOLDER))
         self.card = study_card("lmax_study", tr("Smallest l<sub>max</sub>"))
-        self.tolerance = named(DecimalField(), "lmax_study_tolerance", tr("Largest error in percent"))
-        self.tolerance.setRange(0.1, 100.0)
-        self.tolerance.setDecimals(1)
-        self.tolerance.setValue(5.0)
-        self.tolerance.setSuffix(" %")
+        spoken = tr("Largest error in percent")
+        self.tolerance = decimal_field("lmax_study_tolerance", spoken, 0.1, 100.0, 5.0, " %", decimals=1)
         asked = control_row(QLabel(tr("Smallest l<sub>max</sub> with every error below")), self.tolerance)
         study_panel(self, self.card, left_aligned(asked), self.plot)
 
