@@ -5396,10 +5396,6 @@
         <translation>Einzelne Durchmesser, für alle gleich</translation>
     </message>
     <message>
-        <source>Six descriptors</source>
-        <translation>Sechs Deskriptoren</translation>
-    </message>
-    <message>
         <source>Six particles from the selected one on, and below them their polyhedra, one row per loss function.</source>
         <translation>Sechs Partikel ab dem gewählten, darunter ihre Polyeder, eine Zeile je Verlustfunktion.</translation>
     </message>

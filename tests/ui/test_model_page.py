@@ -352,6 +352,9 @@ def test_that_draws_are_shown_in_units_of_noise_the_farthest_first(shown):
     panel.show_compared(
         DistributionComparison(KEYS, measured, drawn, np.empty((0, len(KEYS))), "log_field", 10, 10)
     )
+    assert {len(plot.curves) for plot in panel.small.values()} == {2}, "all descriptors at once"
+    panel.key.setCurrentIndex(panel.key.findData("convexity"))
+    assert len(panel.plot.curves) == 2
     assert panel.table.item(0, 0).text() == CATALOGUE["convexity"].label
     assert "times the sampling noise" in panel.assessment.text()
     panel.show_compared(None)

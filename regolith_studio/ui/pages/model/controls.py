@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution, kolmogorov_smirnov_distance, wasserstein_1
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
@@ -330,23 +330,23 @@ WAITING = N_("Draw particles: their distributions appear here, over those of the
 SHARE = N_("Share at or below [%]")
 
 
-SIX = "six"
-"""Key of the small plots of the descriptors of the loss."""
+ALL = "all"
+"""Key of the small plots of all descriptors."""
 
 
 class DistributionsPanel(QWidget):
-    """Cumulative distributions as step functions: of six descriptors beside each other, or of one."""
+    """Cumulative distributions as step functions: of all descriptors beside each other, or of one."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_distributions")
-        labels = {SIX: N_("Six descriptors")} | {key: CATALOGUE[key].label for key in KEYS}
+        labels = {ALL: N_("All descriptors")} | {key: CATALOGUE[key].label for key in KEYS}
         self.key = ChoiceBox("model_distribution_of", tr("Descriptor"), labels)
         self.weighting = ChoiceBox(
             "model_distribution_weighting", tr("Weighting of the particles"), WEIGHTINGS
         )
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
-        self.small = {key: CurvePlot(_axis_label(key), "", "") for key in LOSS_KEYS}
+        self.small = {key: CurvePlot(_axis_label(key), "", "") for key in KEYS}
         self._together = QWidget()
         grid = QGridLayout(self._together)
         grid.setContentsMargins(0, 0, 0, 0)
@@ -384,7 +384,7 @@ class DistributionsPanel(QWidget):
         self._show()
 
     def _show(self) -> None:
-        together = self.key.value() == SIX and self._compared is not None
+        together = self.key.value() == ALL and self._compared is not None
         self._together.setVisible(together)
         self._one.setVisible(not together)
         self.words.setVisible(not together)
