@@ -307,6 +307,16 @@ def shorten_demo() -> Iterator[None]:
         yield
 
 
+@contextmanager
+def empty_folder() -> Iterator[Path]:
+    """A folder for this process; each forked one would remove a `TemporaryDirectory` at its own exit too."""
+    folder = Path(tempfile.mkdtemp())
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 def tree(folder: Path) -> Tree:
     """SHA-256 of the files below a folder, but for hidden ones and those that are not compared."""
     found = {}
@@ -453,8 +463,8 @@ def main() -> None:
     rows: Rows = {}
     printed: set[str] = set()
     print(HEAD, flush=True)
-    with tempfile.TemporaryDirectory() as folder, suppress(KeyboardInterrupt):
-        for name in attack(Path(folder), options.only, options.share, options.seed, rows):
+    with empty_folder() as folder, suppress(KeyboardInterrupt):
+        for name in attack(folder, options.only, options.share, options.seed, rows):
             print("\n".join(lines(rows, name)), flush=True)
             printed.add(name)
     for name in dict.fromkeys(name for name, _ in rows if name not in printed):
@@ -462,8 +472,8 @@ def main() -> None:
     print(total(rows))
     inputs: dict[str, list[int]] = {}
     if not options.only:
-        with tempfile.TemporaryDirectory() as folder:
-            inputs = attack_inputs.attack_inputs(Path(folder), options.share, options.seed)
+        with empty_folder() as folder:
+            inputs = attack_inputs.attack_inputs(folder, options.share, options.seed)
         print("\n".join(attack_inputs.lines(inputs)))
     if any(each.lost or each.mixed or each.left or each.unclear for each in rows.values()) or any(
         unclear or outside for *_, unclear, outside in inputs.values()

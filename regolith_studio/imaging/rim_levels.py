@@ -35,9 +35,12 @@ _MIN_CONTRAST = 0.3
 """Share of the contrast that every place must have."""
 _FIRST_SHELL = (1.5, 3.5)
 """Depth in voxels within a mask at which the grey value of its grain is first looked for."""
-_CHANGE, _ROUNDS = 0.04, 3
+_CHANGE, _ROUNDS, _ROUNDS_WITH_CORE = 0.04, 3, 9
 """Change of the level in the shell, as a share of it, from which on the surface is looked for again, and how
-often at most."""
+often at most, also where a core lies just below it: its brightness puts the first surface far off."""
+_CORE_DEPTHS, _CORNER = np.arange(1.6, 4.5, 0.2, dtype=np.float32), 0.45
+"""Depths in voxels at which a core is looked for, and the usual distance along a surface to the next corner
+of its mesh."""
 _HOLLOW, _HOLLOW_SMOOTHING, _HOLLOW_REACH = 0.6, 1.0, 2.0
 """Share of grain below which a place is hollow, standard deviation in voxels over which it is averaged, and
 distance in voxels within which a pore is seen."""
@@ -112,15 +115,19 @@ def grain_shares(
         return "it is in part hardly brighter or darker than its surroundings"
     level = np.maximum(level, np.float32(_MIN_CONTRAST * abs(lift)))
     grain, full = _Grain(above, noise, others, inside, outside, cubic_voxels), inside > RIM
-    for _ in range(_ROUNDS):
+    core = np.zeros_like(level)
+    for number in range(_ROUNDS_WITH_CORE):
         before = level
         levels = _level_and_full(grain, level)
         if levels is None:
             break
-        level, full = levels
-        if (np.abs(level - before)[shell] <= _CHANGE * level[shell]).all():
+        level, full, core = levels
+        rounds_left = number + 1 < (_ROUNDS_WITH_CORE if core.any() else _ROUNDS)
+        if not rounds_left or (np.abs(level - before)[shell] <= _CHANGE * level[shell]).all():
             break
-    return GrainShares(np.asarray(above / level, np.float32), full, noise / float(np.median(level[shell])))
+    return GrainShares(
+        np.asarray((above - core) / level, np.float32), full, noise / float(np.median(level[shell]))
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,8 +142,9 @@ class _Grain:
     cubic: bool
 
 
-def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray] | None:
-    """Contrast of full grain about each voxel from a first estimate of it, and which voxels are full."""
+def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Floats] | None:
+    """Contrast of full grain about each voxel from a first estimate of it, which voxels are full, and what a
+    core adds in each."""
     body, share = grain.inside > 0.0, np.asarray(grain.above / level, np.float32)
     smooth = ndimage.gaussian_filter(np.where(grain.others, np.float32(0.0), share), PRESMOOTHING)
     surface = body_contour(smooth)
@@ -156,9 +164,9 @@ def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray] | 
     rim_level = _rim_level(grain, np.where(known, depths, np.float32(0.0)), blur)
     if rim_level is None:
         return None
-    level, begin = rim_level
+    level, begin, core = rim_level
     full = body & ((depths > begin) | (grain.inside > RIM))
-    return level, full if from_pore is None else full | (body & (from_pore < depths))
+    return level, full if from_pore is None else full | (body & (from_pore < depths)), core
 
 
 def _depths(body: BoolArray, surface: Mesh) -> Floats:
@@ -171,8 +179,9 @@ def _depths(body: BoolArray, surface: Mesh) -> Floats:
     return depths
 
 
-def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floats] | None:
-    """Contrast of full grain about each voxel, and the depth from which on voxels are full; or nothing.
+def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floats, Floats] | None:
+    """Contrast of full grain about each voxel, the depth from which on voxels are full, and what a core
+    adds in each voxel; or nothing.
 
     ``depths``: distance to the surface of voxels that may tell the level, else 0. ``blur``: standard
     deviation of the edge, in voxels.
@@ -192,12 +201,58 @@ def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floa
         chosen = (deep > low) & (deep <= high)
         layers.append(_local(above.shape, indices[chosen], full[chosen], noise, typical))
     level, thin, weight = _joined(layers, noise, _TOLERANCE * typical)
+    added = np.zeros(above.shape, np.float32)
+    if (differs := thin & (layers[1][1] > _MIN_WEIGHT)).any():
+        rim, added, fitted = _rim_and_core(above, depths, blur, differs)
+        level = np.where(fitted, rim, level)
     seen = weight > _MIN_WEIGHT
     if not seen.any():
         return None
     level = np.where(seen, level, np.float32(np.average(level, weights=weight)))
     begin = np.where(thin & seen, _FULL_IF_THIN * wide, _FULL * wide).astype(np.float32)
-    return _spread(level, above.shape), _spread(begin, above.shape)
+    return _spread(level, above.shape), _spread(begin, above.shape), added
+
+
+def _rim_and_core(
+    above: Floats, depths: Floats, blur: float, differs: BoolArray
+) -> tuple[Floats, Floats, BoolArray]:
+    """Contrast of the rim of each block over a core that begins within the shell, what that core adds in each
+    voxel, and the blocks of which this is known.
+
+    ``differs``: blocks whose shell is not of one grey value. The grey values are those of two blurred edges,
+    of the grain and of the core; their heights follow from least squares for each depth of the core, of which
+    the best is taken. What is darker than :data:`_MIN_CONTRAST` is a pore.
+    """
+    indices = np.flatnonzero((depths > blur) & (depths <= _DEEPEST))
+    deep, values = _below_surface(depths.ravel()[indices]), above.ravel()[indices]
+    blocks, block = _blocks(above.shape), _block_of(indices, above.shape)
+
+    def mean(products: Floats) -> Floats:
+        return _mean(blocks, block, np.asarray(products, np.float32))[0]
+
+    rim = ndtr(deep / blur)
+    rim2, rim_value, value2 = mean(rim * rim), mean(rim * values), mean(values * values)
+    best = np.full(blocks, np.inf, np.float32)
+    level, height, begin = (np.zeros(blocks, np.float32) for _ in range(3))
+    for at in _CORE_DEPTHS:
+        core = ndtr((deep - at) / blur)
+        both, core2, core_value = mean(rim * core), mean(core * core), mean(core * values)
+        determinant = np.maximum(rim2 * core2 - both * both, 1e-9)
+        one = (core2 * rim_value - both * core_value) / determinant
+        other = (rim2 * core_value - both * rim_value) / determinant
+        error = value2 - one * rim_value - other * core_value
+        better = (error < best) & (one > 0.0) & (one + other > _MIN_CONTRAST * one)
+        for kept, new in ((best, error), (level, one), (height, other), (begin, at)):
+            np.copyto(kept, new, where=better, casting="same_kind")
+    known = differs & np.isfinite(best)
+    added = _spread(np.where(known, height, np.float32(0.0)), above.shape)
+    added *= ndtr((_below_surface(depths) - _spread(begin, above.shape)) / blur)
+    return level, np.where(depths > 0.0, added, np.float32(0.0)), known
+
+
+def _below_surface(depths: Floats) -> Floats:
+    """Depths below the surface from those below its nearest corner."""
+    return np.asarray(np.sqrt(np.maximum(depths**2 - _CORNER**2, 0.0)), np.float32)
 
 
 def _joined(
