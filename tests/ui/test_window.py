@@ -9,7 +9,7 @@ from psygnal import EmitLoopError
 from PySide6.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QSlider, QToolBar
+from PySide6.QtWidgets import QApplication, QSlider, QToolBar, QWidget
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
@@ -20,6 +20,7 @@ from regolith_studio.ui.dialogs.files import UnitDialog
 from regolith_studio.ui.page import PageStack
 from regolith_studio.ui.startup import check_display, make_excepthook, open_window
 from regolith_studio.ui.theme import DARK, LIGHT, current_theme
+from regolith_studio.ui.widgets.toast import Toast
 
 SECONDS = 120.0
 
@@ -163,7 +164,10 @@ def test_that_what_cannot_be_opened_is_said_without_a_question(window, tmp_path,
     assert window.session.particles == before
 
 
-def test_that_volumes_datasets_and_cards_go_to_their_pages(window, tmp_path):
+def test_that_volumes_datasets_cards_and_exports_go_to_their_pages(window, tmp_path):
+    window.menus.by_name["export"].trigger()
+    assert window.pages.current == "dataset"
+    assert window.page.targets.export.isEnabled()
     opened = []
     for key in ("scan", "dataset", "model"):
         page = window.go(key)
@@ -209,12 +213,13 @@ def test_that_one_bad_file_among_good_ones_is_its_sentence(window, wait, tmp_pat
     assert window.toast.sentence.text() == "empty.ply is empty: it has no bytes at all."
 
 
-def test_that_an_error_of_the_program_is_told_and_survived(window, capsys):
-    hook = make_excepthook(window.toast.problem)
+def test_that_an_error_of_the_program_is_told_and_survived(shown, capsys):
+    toast = Toast(shown(QWidget()))
+    hook = make_excepthook(toast.problem)
     for error in (ValueError("shape"), InputError("The seed must not be negative.")):
         hook(type(error), error, None)
-        assert window.toast.isVisible()
-    assert window.toast.sentence.text() == "The seed must not be negative."
+        assert toast.isVisible()
+    assert toast.sentence.text() == "The seed must not be negative."
     assert "ValueError" in capsys.readouterr().err
 
 
@@ -250,12 +255,6 @@ def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     assert window.session.choices.n_facets == 14
     assert "Run as a batch" in window.toast.sentence.text()
     assert {task.id for task in window.session.tasks if task.queue == "load"} <= set(reading)
-
-
-def test_that_to_dem_shows_where_datasets_are_exported(window):
-    window.menus.by_name["export"].trigger()
-    assert window.pages.current == "dataset"
-    assert window.page.targets.export.isEnabled()
 
 
 @pytest.mark.slow
@@ -301,17 +300,6 @@ def test_that_closed_particles_are_released_although_work_never_ends(monkeypatch
     window.session.run("endless", "endless", Job(work_without_end), lambda _result: None)
     wait(lambda: len(released) > 1, SECONDS)
     assert window.session.tasks
-
-
-def test_that_every_command_has_its_place_and_a_tip(window):
-    for name, action in window.menus.by_name.items():
-        assert action.toolTip(), name
-    seen = set()
-    for name, action in window.menus.by_name.items():
-        owner = name.split(".")[0] if "." in name and not name.startswith("go.") else "window"
-        keys = (owner, action.shortcut().toString())
-        assert not keys[1] or keys not in seen, name
-        seen.add(keys)
 
 
 def test_that_closing_while_busy_stops_what_runs(window, wait, monkeypatch):

@@ -342,11 +342,8 @@ class Tour(QWidget):
             self._watched = target
 
     def _arrange(self) -> None:
-        row = QHBoxLayout()
         self._count.setWordWrap(False)
-        row.addWidget(self._count, 1)
-        for button in (self.end, self.back, self.next):
-            row.addWidget(button)
+        row = hbox((self._count, 1), self.end, self.back, self.next)
         vbox(self._title, self._text, row, parent=self._bubble, margins=(16, 14, 16, 12), spacing=8)
 
 

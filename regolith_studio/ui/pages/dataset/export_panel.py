@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QCheckBox,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QPushButton,
     QScrollArea,
@@ -27,7 +26,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
 from regolith_studio.settings import settings_in
-from regolith_studio.ui.layout import Collapsible, named, vbox
+from regolith_studio.ui.layout import Collapsible, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -72,18 +71,16 @@ class ExportPanel(QWidget):
         form = QFormLayout()
         form.addRow(tr("Coarse graining"), self.coarse_graining)
         form.addRow(tr("Particles drawn"), self.particles)
-        layout = vbox(heading(tr("4  Export to")), parent=self, spacing=4)
-        for title, keys in groups().items():
-            layout.addWidget(hint_label(tr(title)))
-            for key in keys:
-                layout.addWidget(self.boxes[key])
-        layout.addLayout(form)
-        layout.addWidget(
-            Collapsible(
-                tr("Material and cylinder"),
-                _column((self.contact, self.test, self.times, hint_label(f"* {tr(NOT_GIVEN)}"))),
-            )
-        )
+        parts = (self.contact, self.test, self.times, hint_label(f"* {tr(NOT_GIVEN)}"))
+        for field in (field for part in parts for field in part.findChildren(QAbstractSpinBox)):
+            field.setMinimumWidth(NARROW)  # its own would have room for the largest number
+        formats = [
+            part
+            for title, keys in groups().items()
+            for part in (hint_label(tr(title)), *(self.boxes[key] for key in keys))
+        ]
+        more = Collapsible(tr("Material and cylinder"), *parts)
+        vbox(heading(tr("4  Export to")), *formats, form, more, parent=self, spacing=4)
         self.foot = QWidget()
         """Belongs below the scrolled column: the button stays in sight however many formats there are."""
         self.preview = hint_label()
@@ -266,17 +263,6 @@ def _filling_text(label: str, found: CylinderFilling) -> str:
     return text + " " + tr("More than {limit} are too many:", limit=number_text(MANY_PARTICLES, ","))
 
 
-def _column(parts: Sequence[QWidget]) -> QWidget:
-    column = QWidget()
-    layout = QVBoxLayout(column)
-    layout.setContentsMargins(0, 0, 0, 0)
-    for part in parts:
-        layout.addWidget(part)
-        for field in part.findChildren(QAbstractSpinBox):
-            field.setMinimumWidth(NARROW)  # its own would have room for the largest number
-    return column
-
-
 class LossesLabel(QScrollArea):
     """Describes what the selected formats lose."""
 
@@ -348,8 +334,6 @@ class ExportsList(QWidget):
 
     def _row(self, one: ExportResult) -> QWidget:
         row = QWidget()
-        line = QHBoxLayout(row)
-        line.setContentsMargins(0, 0, 0, 0)
         name = QLabel(tr(EXPORTERS[one.key].label) if one.key in EXPORTERS else one.key)
         name.setMinimumWidth(190)
         look, copy = QPushButton(tr("Open folder")), QPushButton(tr("Copy load command"))
@@ -357,8 +341,5 @@ class ExportsList(QWidget):
         copy.setObjectName(f"dataset_copy_{one.key}")
         look.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(one.folder))))
         copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(one.load_command))
-        line.addWidget(name)
-        line.addWidget(ElidedLabel(one.load_command, role="hint"), 1)
-        line.addWidget(copy)
-        line.addWidget(look)
+        hbox(name, (ElidedLabel(one.load_command, role="hint"), 1), copy, look, parent=row)
         return row

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QSpinBox,
     QStackedWidget,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -171,17 +170,17 @@ class SourceControls(QWidget):
         self.model.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
 
     def _place(self) -> None:
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        row = hbox((self.source, 1), self.open)
-        layout.addWidget(heading(tr("Sample or material")))
-        layout.addLayout(row)
-        layout.addWidget(FixedHeightText((self.findings,)))
-        layout.addSpacing(8)
-        layout.addWidget(heading(tr("Model")))
-        summary = FixedHeightText((self.summary,))
-        for widget in (self.model, summary, self.l_max, self._forms, self.half, self.fit):
-            layout.addWidget(widget)
+        vbox(
+            heading(tr("Sample or material")),
+            hbox((self.source, 1), self.open),
+            FixedHeightText((self.findings,)),
+            8,
+            heading(tr("Model")),
+            self.model,
+            FixedHeightText((self.summary,)),
+            *(self.l_max, self._forms, self.half, self.fit),
+            parent=self,
+        )
 
 
 class DrawControls(QWidget):
@@ -282,7 +281,9 @@ class DrawControls(QWidget):
         form = QFormLayout()
         form.addRow(tr("Particles"), self.number)
         form.addRow(tr("Seed"), self.seed)
-        layout = vbox(
+        parts = QFormLayout()
+        parts.addRow(self._names_label, self.names)
+        vbox(
             heading(tr("Virtual particles")),
             form,
             self.limited,
@@ -290,11 +291,9 @@ class DrawControls(QWidget):
             self.draw,
             FixedHeightText((self.findings,)),
             self.adopt,
+            parts,  # last, because only mixtures have them
             parent=self,
         )
-        parts = QFormLayout()  # last, because only mixtures have them
-        parts.addRow(self._names_label, self.names)
-        layout.addLayout(parts)
 
 
 def request_from(

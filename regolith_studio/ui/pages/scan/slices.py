@@ -7,7 +7,7 @@ import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QStackedLayout, QWidget
 
 from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.imaging.label_surface import LabelSurface
@@ -20,7 +20,7 @@ from regolith_studio.jobs.scan_jobs import Scan
 from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.scene.surfaces import show_grains
-from regolith_studio.ui.layout import equal_parts, named, vbox
+from regolith_studio.ui.layout import STRETCH, equal_parts, named, vbox
 from regolith_studio.ui.pages.scan.slice_view import SliceView, colours_of_labels
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush, BrushPanel
 from regolith_studio.ui.theme import Theme, current_theme
@@ -463,7 +463,6 @@ class SlicesView(QWidget):
         below = equal_parts(Qt.Orientation.Horizontal, [self.histogram, self.grains.frame])
         page = equal_parts(Qt.Orientation.Vertical, [slices, below])
         hint = QWidget()
-        column_of_words = QVBoxLayout(hint)
         words = hint_label(
             tr(
                 "Open a CT volume: TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, "
@@ -472,9 +471,7 @@ class SlicesView(QWidget):
             )
         )
         words.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        column_of_words.addStretch(1)
-        column_of_words.addWidget(words)
-        column_of_words.addStretch(1)
+        vbox(STRETCH, words, STRETCH, parent=hint, margins=None)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(hint)
         self._stack.addWidget(page)

@@ -11,11 +11,9 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QFormLayout,
     QGridLayout,
-    QHBoxLayout,
     QLabel,
     QListWidget,
     QRadioButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -31,7 +29,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
-from regolith_studio.ui.layout import named, vbox
+from regolith_studio.ui.layout import STRETCH, hbox, named, vbox
 from regolith_studio.ui.pages.scan.controls import button
 from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec, choice
@@ -96,14 +94,6 @@ class TrainingPanel(QWidget):
         """Say what is missing for a classifier, or nothing."""
         self.state.setText(words)
         self.state.setVisible(bool(words))
-
-
-def _add_rows(layout: QVBoxLayout, rows: Sequence[Sequence[QWidget]]) -> None:
-    for parts in rows:
-        row = QHBoxLayout()
-        for part in parts:
-            row.addWidget(part)
-        layout.addLayout(row)
 
 
 class BrushPanel(TrainingPanel):
@@ -217,21 +207,21 @@ class BrushPanel(TrainingPanel):
         self.labels.clicked.connect(self.labelsRequested)
 
     def _arrange(self) -> None:
-        layout = vbox(heading(tr("Classifier")), parent=self)
-        rows: tuple[tuple[QWidget, ...], ...] = (
-            (self.paint, self.eraser),
-            (self.kind,),
-            (self.diameter,),
-            (self.overlay,),
-            (QLabel(tr("Widths")), self.sigmas),
-            (self.planar,),
-            (self.undo, self.clear),
-            (self.use, self.labels),
-            (self.browse, self.save),
+        vbox(
+            heading(tr("Classifier")),
+            hbox(self.paint, self.eraser),
+            self.kind,
+            self.diameter,
+            self.overlay,
+            hbox(QLabel(tr("Widths")), self.sigmas),
+            self.planar,
+            hbox(self.undo, self.clear),
+            hbox(self.use, self.labels),
+            hbox(self.browse, self.save),
+            self.state,
+            STRETCH,
+            parent=self,
         )
-        _add_rows(layout, rows)
-        layout.addWidget(self.state)
-        layout.addStretch(1)
 
 
 def swatch(colour: str) -> QIcon:
@@ -323,15 +313,18 @@ class ObjectsPanel(TrainingPanel):
             box.currentIndexChanged.connect(self.actionsChanged)
 
     def _arrange(self) -> None:
-        layout = vbox(heading(tr("Object classifier")), self.mark, self.kind, self.state, parent=self)
         form = QFormLayout()
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         for label, box in zip(self.counts, self.action_boxes, strict=True):
             form.addRow(label, box)
-        layout.addLayout(form)
-        layout.addWidget(self.apply)
-        _add_rows(layout, ((self.undo, self.clear), (self.browse, self.save)))
-        layout.addStretch(1)
+        vbox(
+            heading(tr("Object classifier")),
+            *(self.mark, self.kind, self.state, form, self.apply),
+            hbox(self.undo, self.clear),
+            hbox(self.browse, self.save),
+            STRETCH,
+            parent=self,
+        )
 
 
 NO_TOOL = ""
@@ -472,14 +465,15 @@ class EditsPanel(QWidget):
             self.toolChanged.emit(self.tool)
 
     def _arrange(self) -> None:
-        layout = vbox(heading(tr("Corrections by hand")), parent=self)
         grid = QGridLayout()
         for number, made in enumerate(self.tools.values()):
             grid.addWidget(made, number // 2, number % 2)
-        layout.addLayout(grid)
-        layout.addWidget(self.diameter)
-        layout.addWidget(self.hint)
-        layout.addWidget(heading(tr("Suspect grains")))
-        layout.addWidget(self.suspects, 1)
-        layout.addWidget(self.list, 1)
-        _add_rows(layout, ((self.undo, self.redo),))
+        vbox(
+            heading(tr("Corrections by hand")),
+            *(grid, self.diameter, self.hint),
+            heading(tr("Suspect grains")),
+            (self.suspects, 1),
+            (self.list, 1),
+            hbox(self.undo, self.redo),
+            parent=self,
+        )

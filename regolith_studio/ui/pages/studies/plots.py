@@ -7,7 +7,7 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QResizeEvent
-from PySide6.QtWidgets import QLabel, QStackedLayout, QTableWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QStackedLayout, QTableWidgetItem, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import JACCARD
@@ -24,7 +24,7 @@ from regolith_studio.studies.sweeps import (
     format_difference,
     significant,
 )
-from regolith_studio.ui.layout import control_row, left_aligned
+from regolith_studio.ui.layout import control_row, left_aligned, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
@@ -224,10 +224,7 @@ def study_card(name: str, *captions: str) -> ResultView:
 
 def study_panel(panel: QWidget, *parts: QWidget) -> None:
     """Lay a panel out: card and controls above what takes the room that is left."""
-    layout = QVBoxLayout(panel)
-    layout.setContentsMargins(8, 8, 8, 4)
-    for part in parts:
-        layout.addWidget(part, int(part is parts[-1]))
+    vbox(*parts[:-1], (parts[-1], 1), parent=panel, margins=(8, 8, 8, 4))
 
 
 def particles_text(study: CoarseningStudy | LmaxStudy) -> str:
