@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-import warnings
 from functools import partial
 from pathlib import Path
 
@@ -69,22 +68,6 @@ def test_that_a_process_that_outlives_its_command_is_counted_and_ended(
     begun = time.monotonic()
     assert Running(leave_a_process, tmp_path / "tmp").end() == Ended(130, "Stopped.\n", 1)
     assert time.monotonic() - begun < 30
-
-
-def leave_a_file_open(path: Path) -> None:
-    sys.unraisablehook = sys.__unraisablehook__  # pytest has one of its own
-    path.open("w")  # a ResourceWarning, which an interruption leaves behind in libraries
-    sys.stderr.write("Stopped.\n")
-    raise SystemExit(129)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
-def test_that_a_command_of_the_attack_has_the_warnings_of_an_ordinary_start(tmp_path: Path) -> None:
-    (tmp_path / "tmp").mkdir()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        running = Running(partial(leave_a_file_open, tmp_path / "file"), tmp_path / "tmp")
-    assert running.end() == Ended(129, "Stopped.\n", 0)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")

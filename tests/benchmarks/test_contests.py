@@ -1,13 +1,12 @@
 """The measuring itself is right, and the plain programs do the same work as the program."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from benchmarks import contests, plain, steps
-from benchmarks.contests import Contest, Growth, Outcome
+from benchmarks.contests import Contest, Growth
 from benchmarks.plain import by_trimesh
 from benchmarks.steps import polyhedron, stone
 from regolith_studio.dem.angle_of_repose import measure_repose
@@ -39,20 +38,6 @@ def test_that_memory_is_the_peak_of_a_call() -> None:
 def test_that_the_exponent_is_the_power_of_the_size() -> None:
     growth = Growth("t", "n", (1, 2, 4, 8), (3.0, 12.0, 48.0, 192.0))
     assert growth.exponent == pytest.approx(2.0)
-
-
-def test_that_the_report_can_be_read_by_people_and_programs(tmp_path: Path) -> None:
-    outcomes = [
-        Outcome("box", "hull", "scipy", "processor", 2.0, 10.0, 5.0, 4.0, 6.0, 1.0, 2.0),
-        Outcome("mesh", "alone", "", "wall", 2.0, None, None, None, None, 1.0, None),
-    ]
-    growths = [Growth("fit", "l_max", (1, 2), (3.0, 6.0))]
-    paths = contests.write(tmp_path, outcomes, growths, 3)
-    said = json.loads((tmp_path / "benchmarks.json").read_text())
-    assert said["contests"][0]["ratio"] == 5.0
-    assert said["growth"][0]["exponent"] == pytest.approx(1.0)
-    assert {path.suffix for path in paths} == {".json", ".png", ".svg"}
-    assert "5.0  4.0 to 6.0" in contests.table(outcomes)
 
 
 def test_that_the_plain_descriptors_are_those_of_the_program() -> None:
@@ -91,17 +76,3 @@ def test_that_the_plain_reader_and_writer_keep_the_volume(tmp_path: Path) -> Non
     assert abs(plain.read(tmp_path / "meshes" / "particle_0000.stl").volume) == pytest.approx(1.0, abs=1e-5)
     (tmp_path / "stone.stl").write_bytes(stl_bytes(stone(2).triangles, "test"))
     assert plain.read(tmp_path / "stone.stl").volume == pytest.approx(stone(2).volume, rel=1e-5)
-
-
-def test_that_every_heavy_step_has_a_contest() -> None:
-    source = Path(steps.__file__).read_text(encoding="utf-8")
-    for step in ("reading", "extraction", "descriptors", "exact box", "SH fit", "synthesis", "model fit"):
-        assert f'"{step}"' in source
-    for step in ("drawing", "loss evaluation", "coarsening", "dataset writing", "angle of repose"):
-        assert f'"{step}"' in source
-
-
-def test_that_only_what_is_asked_for_is_prepared(tmp_path: Path) -> None:
-    found = list(steps.contests(tmp_path, "angle"))
-    assert [contest.step for contest in found] == ["angle of repose"]
-    assert list(tmp_path.iterdir()) == []

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from tools.make_samples.grains import (
-    AgglutinateRecipe,
-    StarRecipe,
     even_sphere,
-    random_rotation,
-    star_radius,
 )
 from tools.make_samples.samples import GRAINS, SampleGrain
 
@@ -59,37 +55,8 @@ def test_that_agglutinates_are_not_star_shaped_and_far_from_convex() -> None:
         assert mesh.face_areas[facing < 0].sum() > 0.02 * mesh.surface_area
 
 
-@pytest.mark.parametrize("recipe", [StarRecipe(80.0), AgglutinateRecipe(80.0)], ids=["star", "agglutinate"])
-@pytest.mark.slow
-def test_that_one_seed_gives_one_grain_and_another_seed_another(recipe) -> None:
-    first, again, other = (recipe.make(np.random.default_rng(seed)) for seed in (1, 1, 2))
-    assert first.content_hash == again.content_hash
-    assert first.content_hash != other.content_hash
-
-
-@pytest.mark.slow
-def test_that_the_radius_function_and_the_mesh_are_the_same_surface() -> None:
-    recipe = StarRecipe(80.0, stretch=(1.5, 1.0, 0.6))
-    mesh = recipe.make(np.random.default_rng(5))
-    radius = star_radius(recipe, np.random.default_rng(5))
-    directions = even_sphere(20_000).vertices
-    volume = 4 * np.pi / 3 * np.mean(radius(directions) ** 3)
-    scale = (volume / mesh.volume) ** (1 / 3)
-    box = np.ptp(directions * radius(directions)[:, None], axis=0)
-    assert np.ptp(mesh.vertices, axis=0) * scale == pytest.approx(box, rel=0.01)
-
-
 def test_that_the_even_sphere_has_the_volume_and_faces_of_a_ball() -> None:
     sphere = even_sphere(1000)
     assert len(sphere.faces) == 1996
     assert_closed(sphere)
     assert sphere.volume == pytest.approx(4 * np.pi / 3, rel=0.01)
-
-
-def test_that_random_rotations_are_proper_and_uniform() -> None:
-    generator = np.random.default_rng(0)
-    turns = np.array([random_rotation(generator) for _ in range(4000)])
-    assert turns[0] @ turns[0].T == pytest.approx(np.eye(3), abs=1e-12)
-    assert np.linalg.det(turns) == pytest.approx(1.0)
-    assert np.abs(turns.mean(axis=0)).max() < 0.04
-    assert (turns**2).mean(axis=0) == pytest.approx(np.full((3, 3), 1 / 3), abs=0.03)

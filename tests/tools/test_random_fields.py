@@ -5,12 +5,7 @@ import pytest
 from scipy.special import eval_legendre
 
 from tools.make_samples.grains import even_sphere
-from tools.make_samples.random_fields import SphereField, power_law
-
-
-def test_that_a_power_law_falls_as_it_says() -> None:
-    law = power_law(2, 4, 0.5, 2.0)
-    assert law == {2: 0.5, 3: pytest.approx(0.5 * (2 / 3) ** 2), 4: pytest.approx(0.125)}
+from tools.make_samples.random_fields import SphereField
 
 
 def test_that_the_variance_at_a_point_is_that_of_the_coefficients() -> None:
@@ -30,8 +25,3 @@ def test_that_a_field_of_degree_three_is_reproduced_by_the_kernel_of_degree_thre
     for degree, expected in ((3, values[:20]), (4, np.zeros(20))):
         kernel = (2 * degree + 1) * eval_legendre(degree, np.clip(sphere[:20] @ sphere.T, -1, 1))
         assert kernel @ values / len(sphere) == pytest.approx(expected, abs=5e-3)
-
-
-def test_that_degree_zero_is_a_constant() -> None:
-    values = SphereField({0: 1.0}, np.random.default_rng(1))(even_sphere(50).vertices)
-    assert np.ptp(values) < 1e-12

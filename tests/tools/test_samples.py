@@ -2,8 +2,6 @@
 
 import hashlib
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -67,15 +65,3 @@ def test_that_the_manifest_names_every_file_with_its_hash() -> None:
 def test_that_all_samples_together_stay_below_ten_megabytes() -> None:
     total = sum(path.stat().st_size for path in resource("samples").rglob("*") if path.is_file())
     assert total < 10e6
-
-
-def test_that_the_command_refuses_to_guess_a_folder() -> None:
-    run = subprocess.run(
-        [sys.executable, "-m", "tools.make_samples"],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=Path(__file__).parents[2],
-    )
-    assert run.returncode == 1
-    assert "FOLDER" in run.stderr

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from regolith_studio.errors import InputError
 from tools.make_samples.synthetic_ct import ScanRecipe, SyntheticScan, grain_coverage, synthetic_scan
 
 SMALL = ScanRecipe(shape=(56, 64, 60), n_grains=6, diameter=(15.0, 12.0, 19.0), minerals=(150.0,))
@@ -47,15 +46,3 @@ def test_that_half_brightness_lies_at_the_grains_surface() -> None:
     bright = again.grey.array > (150 + SMALL.resin) / 2
     wrong = bright != (again.labels.array > 0)
     assert wrong.sum() < 0.05 * (again.labels.array > 0).sum()
-
-
-@pytest.mark.slow
-def test_that_one_seed_gives_one_scan(scan: SyntheticScan) -> None:
-    again, other = synthetic_scan(SMALL, 1), synthetic_scan(SMALL, 2)
-    assert np.array_equal(scan.grey.array, again.grey.array)
-    assert not np.array_equal(scan.labels.array, other.labels.array)
-
-
-def test_that_a_volume_too_small_for_its_grains_is_refused() -> None:
-    with pytest.raises(InputError, match="No place was found"):
-        synthetic_scan(ScanRecipe(shape=(24, 24, 24), n_grains=40, attempts=50), 0)
