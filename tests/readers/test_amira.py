@@ -10,8 +10,9 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
+from tests.readers.mutations import check_sentence, mutated
 from tests.readers.test_txm import marked
-from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated
+from tests.readers.test_volume_mutations import answer_of
 
 SHAPE = (4, 5, 6)
 TYPES = {"byte": "u1", "short": "i2", "ushort": "u2", "int": "i4", "float": "f4", "double": "f8"}

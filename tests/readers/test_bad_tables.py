@@ -14,6 +14,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.coefficient_tables import read_coefficients
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.readers.sandbox.tasks import parse_positions
+from tests.readers.mutations import mutated
 
 Bad = tuple[str, bytes | str, str]
 WORDS = ("one", "1,5x", "0x1F", "--1", "1e", "1.2.3", "∞", "\x1b[31m", "None", "1 e5", "$1", "#")
@@ -348,32 +349,6 @@ SEEDS = {
         :-10
     ] + struct.pack("<I", 24) + POINTS + b"</AppendedData></VTKFile>",
 }  # fmt: skip
-HURTS = [
-    b"",
-    b"\0",
-    b"\xff\xff\xff\xff",
-    b"-1",
-    b"1e999",
-    b"nan",
-    b"9" * 12,
-    b"\n",
-    b" ",
-    b",",
-    b";",
-    b"<",
-    b'"',
-    b"ITEM:",
-]
-
-
-def mutated(data: bytes, rng: np.random.Generator) -> bytes:
-    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts."""
-    for _ in range(rng.integers(1, 5)):
-        place = int(rng.integers(0, len(data) + 1))
-        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
-        change = [rng.bytes(1), HURTS[rng.integers(len(HURTS))], data[place:end] * 2, b""][rng.integers(4)]
-        data = data[:place] + change + data[end:]
-    return data
 
 
 def survive(name: str, count: int, seed: int) -> None:

@@ -27,8 +27,9 @@ from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 from regolith_studio.session.file_kinds import FileKind, kind_of
+from tests.readers.mutations import check_sentence, mutated
 from tests.readers.test_txm import marked
-from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated
+from tests.readers.test_volume_mutations import answer_of
 
 SHAPE = (5, 6, 7)
 X, Y, Z, STEP = 0.010, 0.020, 0.050, np.array([0.0, 0.0, 0.050])

@@ -14,9 +14,10 @@ from pydicom.uid import UID, ExplicitVRBigEndian, ExplicitVRLittleEndian, Implic
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
+from tests.readers.mutations import check_sentence, mutated
 from tests.readers.test_dicom import ORIGIN, SHAPE, STEP, X, Y, Z, dicom, series
 from tests.readers.test_txm import marked
-from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated
+from tests.readers.test_volume_mutations import answer_of
 
 ORDER = (3, 0, 4, 1, 2)
 """Place of each frame in the volume."""

@@ -12,6 +12,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.topology import merged_vertices
 from regolith_studio.readers.sandbox.tasks import parse_mesh
+from tests.readers.mutations import check_sentence, mutated
 
 NAMES = [
     "binary.stl",
@@ -24,21 +25,6 @@ NAMES = [
     "cube.gltf",
     "cube.3mf",
     "cube.glb",
-]
-WORDS = [
-    b"",
-    b"\0",
-    b"\xff\xff\xff\xff",
-    b"-1",
-    b"1e999",
-    b"nan",
-    b"9" * 12,
-    b"\n",
-    b" ",
-    b"#",
-    b"\\\n",
-    b"vertex",
-    b"list",
 ]
 
 
@@ -64,22 +50,6 @@ def seeds(cube):
     }
 
 
-def mutated(data, rng):
-    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts."""
-    for _ in range(rng.integers(1, 5)):
-        place = int(rng.integers(0, len(data) + 1))
-        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
-        kind = rng.integers(0, 4)
-        middle = [
-            rng.bytes(1),
-            WORDS[rng.integers(0, len(WORDS))],
-            data[place:end] * 2,
-            bytes([data[place - 1] ^ (1 << int(rng.integers(0, 8)))]) if place and data else b"",
-        ][kind]
-        data = data[:place] + middle + data[end:]
-    return data
-
-
 def nudged(data, rng):
     """`data` with one bit changed."""
     place = int(rng.integers(0, len(data)))
@@ -93,8 +63,7 @@ def survives(name, data):
     except (FileError, GeometryError) as error:
         sentence = str(error)
         assert sentence.startswith(name), sentence
-        assert sentence.endswith("."), sentence
-        assert "\n" not in sentence, sentence
+        check_sentence(sentence, 400)
         return False
     assert parsed.vertices.shape[1:] == parsed.faces.shape[1:] == (3,)
     assert np.isfinite(parsed.vertices).all()

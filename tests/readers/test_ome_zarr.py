@@ -20,8 +20,9 @@ from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 from regolith_studio.readers.voxels.header import VoxelHeader
 from regolith_studio.session.file_kinds import FileKind, kind_of
+from tests.readers.mutations import check_sentence, mutated
 from tests.readers.test_txm import marked
-from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated, sandboxed_answer_of
+from tests.readers.test_volume_mutations import answer_of, sandboxed_answer_of
 
 SHAPE = (9, 10, 11)
 EDGES = {"z": 5.0, "y": 2.0, "x": 1.5, "c": 1.0, "t": 1.0}

@@ -11,8 +11,9 @@ import tifffile
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
+from tests.readers.mutations import check_sentence, mutated
 from tests.readers.test_txm import marked
-from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated
+from tests.readers.test_volume_mutations import answer_of
 
 SHAPE = (4, 5, 6)
 VGI = """{volume1}

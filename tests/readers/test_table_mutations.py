@@ -4,11 +4,9 @@ Every reader gives values or one sentence, nothing else; all are asked in this p
 but the error of a bad file passes for an answer.
 """
 
-import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 from typing import Any
 
@@ -32,9 +30,8 @@ from regolith_studio.shape_models.materials import materials, write_card
 from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.sample import Sample
 from tests.dataset.example import example_dataset
+from tests.readers.mutations import check_sentence, folder_in_memory, mutated
 
-HURTS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"NaN", b"9" * 12, b"\n", b" ", b",", b'"', b"{"]
-HURTS += [b"[", b"null", b"true", b"l_max", b"PK\x03\x04", b"<U9999999", b"(99999999,)"]
 Reader = Callable[[Path], Any]
 
 
@@ -142,21 +139,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(written: Path) -> Iterator[Path]:
-    """A copy in memory where there is one: disks take milliseconds for a file that is written anew."""
-    memory = Path("/dev/shm")
-    with TemporaryDirectory(dir=memory if memory.is_dir() and os.access(memory, os.W_OK) else None) as made:
+    with folder_in_memory() as made:
         shutil.copytree(written, made, dirs_exist_ok=True)
-        yield Path(made)
-
-
-def mutated(data: bytes, rng: np.random.Generator) -> bytes:
-    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts."""
-    for _ in range(rng.integers(1, 5)):
-        place = int(rng.integers(0, len(data) + 1))
-        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
-        change = [rng.bytes(1), HURTS[rng.integers(len(HURTS))], data[place:end] * 2, b""][rng.integers(4)]
-        data = data[:place] + change + data[end:]
-    return data
+        yield made
 
 
 def survive(name: str, count: int, seed: int, folder: Path) -> SimpleNamespace:
@@ -171,11 +156,8 @@ def survive(name: str, count: int, seed: int, folder: Path) -> SimpleNamespace:
             read(path)
             said.read += 1
         except (FileError, DatasetError) as error:
-            sentence = str(error)
             said.refused += 1
-            assert sentence.endswith("."), sentence
-            assert "\n" not in sentence, sentence
-            assert len(sentence) < 400, sentence
+            check_sentence(str(error), 400)
     return said
 
 

@@ -6,10 +6,8 @@ answer; TIFF and HDF5, whose libraries are compiled, through the sandbox, as use
 
 import gzip
 import io
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import h5py
 import numpy as np
@@ -20,14 +18,11 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.sandbox.tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
+from tests.readers.mutations import check_sentence, folder_in_memory, mutated
 from tests.readers.test_txm import txm
 
 SLICES = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint16)
 FOREIGN = Path(__file__).with_name("foreign_volumes")
-WORDS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"nan", b"9" * 12, b"\n", b" ", b"#", b":", b"="]
-WORDS += [b"raw", b"gzip", b"LOCAL", b"double", b"MET_LONG", b"../x", b"(1,0,0)", b"\x7f\xff\xff\xff"]
-LONGEST = 2.0
-"""Seconds that a file may take; a child that takes longer is ended, which the sentence says."""
 
 
 def tiff(**options: object) -> bytes:
@@ -82,25 +77,6 @@ LIBRARIES = {
 }
 
 
-def mutated(data: bytes, rng: np.random.Generator) -> bytes:
-    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts.
-
-    Half of the changes are within the first 400 bytes, where headers are.
-    """
-    for _ in range(rng.integers(1, 5)):
-        reach = len(data) if rng.random() < 0.5 else min(len(data), 400)
-        place = int(rng.integers(0, reach + 1))
-        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
-        change = [
-            bytes(rng.integers(0, 256, end - place if end - place < 30 else 1, dtype=np.uint8)),
-            WORDS[rng.integers(len(WORDS))],
-            data[place:end] * 2,
-            b"",
-        ][rng.integers(4)]
-        data = data[:place] + change + data[end:]
-    return data
-
-
 def answer_of(path: Path) -> str:
     """What a parser says to a file, in this process: its sentence, or nothing if it gives voxels."""
     try:
@@ -126,12 +102,6 @@ def sandboxed_answer_of(path: Path, sandbox: Sandbox) -> str:
         sentence = f"{path.name}."
     assert sentence.startswith(path.name), sentence
     return sentence.removeprefix(f"{path.name}.")
-
-
-def check_sentence(sentence: str) -> None:
-    assert not sentence or sentence.endswith("."), sentence
-    assert "\n" not in sentence, sentence
-    assert len(sentence) < 250, sentence
 
 
 def run_own(name: str, count: int, seed: int, path: Path) -> None:
@@ -166,10 +136,8 @@ def run_sandboxed(name: str, count: int, seed: int, path: Path) -> int:
 
 @pytest.fixture
 def folder() -> Iterator[Path]:
-    """A folder in memory where there is one: disks take milliseconds for a file that is written anew."""
-    memory = Path("/dev/shm")
-    with TemporaryDirectory(dir=memory if memory.is_dir() and os.access(memory, os.W_OK) else None) as made:
-        yield Path(made)
+    with folder_in_memory() as made:
+        yield made
 
 
 @pytest.mark.parametrize("name", OWN)
