@@ -7968,10 +7968,6 @@
         <translation>Herkunft der Partikel (steht in dataset.json)</translation>
     </message>
     <message>
-        <source>pull-off force 3/2 π w R*, shared by the contact points; little effect on a heap: use LAMMPS</source>
-        <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; wirkt sich auf eine Schüttung kaum aus: verwenden Sie LAMMPS</translation>
-    </message>
-    <message>
         <source>r_eq {low:.3g} to {high:.3g} µm</source>
         <translation>r_eq {low:.3g} bis {high:.3g} µm</translation>
     </message>

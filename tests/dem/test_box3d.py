@@ -8,7 +8,6 @@ from scipy.spatial.transform import Rotation
 
 pytest.importorskip("robox3d")
 
-from robox3d._ffi import lib
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
@@ -85,25 +84,3 @@ def test_that_the_kinetic_energy_is_that_of_spinning_bodies() -> None:
     spins = Rotation.from_quat(turns).apply(fast[:, 3:], inverse=True)
     expected = 0.5 * np.einsum("ni,ij,nj->", spins, inertia, spins)
     assert solver.energies()[1] == pytest.approx(expected, rel=1e-3)
-
-
-@pytest.mark.parametrize("shapes", ["polyhedra", "spheres"])
-@pytest.mark.parametrize("bond", [1.0, 10.0])
-def test_that_a_doublet_parts_at_its_pull_off_force(shapes: str, bond: float) -> None:
-    """Two cubes or balls without gravity, pulled apart by 0.95 and 1.05 of Bond number times weight."""
-    prepared = scene([cuboid(1, 1, 1)], 0.5, 2)
-    case = replace(prepared.case, shapes=shapes, bond_number=bond)
-    side = (np.pi / 6) ** (1 / 3) if shapes == "polyhedra" else 1.0
-    for share, parted in ((0.95, False), (1.05, True)):
-        solver = Box3dSolver(replace(prepared, case=case), SubstepSettings())
-        solver.begin("rest")
-        solver.set_gravity(np.zeros(3))
-        solver.place(np.array([[0.0, 0.0, 10.0], [side, 0.0, 10.0]]), np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
-        solver.advance(0.05, 20)
-        for _ in range(400):
-            for body, sign in zip(solver.particles, (-1.0, 1.0), strict=True):
-                lib.b3Body_ApplyForceToCenter(body, (sign * share * bond * np.pi / 6, 0.0, 0.0), True)
-            solver.advance(0.05, 1)
-        gap = float(np.linalg.norm(np.diff(solver.points, axis=0))) - side
-        assert bool(gap > 1.0) is parted
-        assert gap > -0.05

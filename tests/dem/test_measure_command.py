@@ -38,41 +38,23 @@ def test_that_a_saved_pile_is_measured_and_drawn(
     assert json.loads((tmp_path / "out" / "repose.json").read_text("utf-8")) == document
 
 
-def test_that_positions_of_other_programs_are_measured(
+def test_that_positions_of_other_programs_are_measured_and_types_and_velocities_are_no_positions(
     pile_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     points = 2.0 * cone(32, 1500, 1)
-    table = tmp_path / "rocky.csv"
+    table, bare, radii, types = (tmp_path / name for name in ("rocky.csv", "pile.xyz", "r.xyz", "types.xyz"))
     np.savetxt(table, np.column_stack([points, np.full(1500, 2.0)]), delimiter=",", header="x,y,z,diameter")
-    bare = tmp_path / "pile.xyz"
-    rows = "\n".join(f"A {x:.6f} {y:.6f} {z:.6f}" for x, y, z in points)
-    bare.write_text(f"1500\npile\n{rows}\n")
-    found = []
-    for arguments in (["repose", "measure", str(pile_file), "--json"], [*_measure(table)]):
-        assert run(arguments) == 0
-        found.append(json.loads(capsys.readouterr().out)["angle_deg"])
-    assert run([*_measure(bare)]) == 1
-    assert "--diameter" in capsys.readouterr().err
-    assert run([*_measure(bare), "--diameter", "2"]) == 0
-    found.append(json.loads(capsys.readouterr().out)["angle_deg"])
-    assert found == pytest.approx([found[0]] * 3, abs=0.05)
-
-
-def test_that_columns_are_named_and_types_and_velocities_are_no_positions(
-    pile_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    points = 2.0 * cone(32, 1500, 1)
-    radii = tmp_path / "radii.xyz"
     rows = [f"{x:.6f} {y:.6f} {z:.6f}" for x, y, z in points]
-    radii.write_text("1500\npile\n" + "\n".join(f"{row} 1.0" for row in rows) + "\n")
-    types = tmp_path / "types.xyz"
-    types.write_text("1500\nAtoms. Timestep: 0\n" + "\n".join(f"1 {row} 0 0 0" for row in rows) + "\n")
+    for path, row in ((bare, "A {} "), (radii, "{} 1.0"), (types, "1 {} 0 0 0")):
+        path.write_text("\n".join(["1500", "Atoms. Timestep: 0", *map(row.format, rows), ""]))
     assert run(["repose", "measure", str(pile_file), "--json"]) == 0
     angle = json.loads(capsys.readouterr().out)["angle_deg"]
-    assert run([*_measure(radii)]) == 1
-    assert "--columns" in capsys.readouterr().err
-    for arguments in ([*_measure(radii), "--columns", "x y z radius"], [*_measure(types), "--diameter", "2"]):
-        assert run(arguments) == 0
+    for path, asked in ((bare, "--diameter"), (radii, "--columns")):
+        assert run(_measure(path)) == 1
+        assert asked in capsys.readouterr().err
+    named = [(table, []), (radii, ["--columns", "x y z radius"])]
+    for path, options in [*named, (bare, ["--diameter", "2"]), (types, ["--diameter", "2"])]:
+        assert run([*_measure(path), *options]) == 0
         assert json.loads(capsys.readouterr().out)["angle_deg"] == pytest.approx(angle, abs=0.05)
 
 

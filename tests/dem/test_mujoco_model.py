@@ -11,12 +11,9 @@ from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engines.mujoco import simulation
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.engines.mujoco.simulation import (
-    ADHESION_GAP,
     PARTICLE,
     PLATE,
-    POINTS_PER_PAIR,
     WALL,
-    adhesion,
     build_model,
 )
 from regolith_studio.dem.lifting_cylinder import N_WALLS
@@ -54,40 +51,6 @@ def test_that_the_cylinder_is_round_and_as_wide_as_asked(boxes: Dataset) -> None
     inner = np.hypot(places[:, 0], places[:, 1]) - sizes[:, 0]
     assert inner == pytest.approx(0.01 / prepared.mean_diameter)
     assert built.model.opt.gravity == pytest.approx([0, 0, -1])
-
-
-def test_that_cohesion_is_the_pull_off_force_in_units_of_the_solver(boxes: Dataset) -> None:
-    prepared = prepare(boxes, ReposeCase(n_particles=100, cohesion="given"))
-    pull = adhesion(prepared)
-    d, mean = prepared.diameters, prepared.mean_diameter
-    force = 1.5 * np.pi * 0.010 * d / 4
-    assert 2 * POINTS_PER_PAIR * pull == pytest.approx(force / (3075 * mean**3 * 9.81))
-    balls = prepare(boxes, ReposeCase(n_particles=100, cohesion="given", shapes="spheres"))
-    assert 2 * adhesion(balls) == pytest.approx(1.5 * np.pi * 0.010 * balls.diameters / 4 / _unit(balls))
-    assert not adhesion(prepare(boxes, ReposeCase(n_particles=100))).any()
-
-
-def _unit(prepared) -> float:
-    """The solver's unit of force in newtons."""
-    return 3075 * prepared.mean_diameter**3 * 9.81
-
-
-@pytest.mark.parametrize(("share", "holds"), [(1.1, True), (0.9, False)])
-def test_that_a_ball_hangs_on_another_by_the_pull_off_force(share: float, holds: bool) -> None:
-    """Two balls of weight 1 a unit of adhesion: the lower hangs if the force is larger than its weight."""
-    spec = mujoco.MjSpec()
-    spec.option.gravity, spec.option.timestep = [0, 0, -1], 0.025
-    spec.option.cone, spec.option.solver = mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtSolver.mjSOL_CG
-    ball = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [0.5, 0, 0], "gap": ADHESION_GAP}
-    ball |= {"adhesion": share * np.pi / 12, "solref": [0.05, 1.0], "solimp": [0.95, 0.99, 0.05, 0.5, 2.0]}
-    spec.worldbody.add_geom(pos=[0, 0, 1], **ball)
-    body = spec.worldbody.add_body(pos=[0, 0, 1e-5])
-    body.add_freejoint()
-    body.add_geom(density=1.0, **ball)
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data, 400)
-    assert (data.qpos[2] > -0.01) == holds
 
 
 def test_that_rolling_resistance_opens_the_dimensions_of_a_contact(boxes: Dataset) -> None:

@@ -96,3 +96,36 @@ def test_that_a_ball_rebounds_with_the_restitution_that_is_set(key: str, restitu
 def test_that_slabs_feel_their_friction_within_two_percent_and_slide_at_its_angle(key: str) -> None:
     assert result_of(scenes.sliding(ENGINES[key])).passed
     assert key == "mujoco" or result_of(scenes.incline(ENGINES[key])).passed
+
+
+def pull_apart(key: str, solver: Any, force: float) -> None:
+    """Two particles along x, for a step."""
+    for k, sign in enumerate((-1.0, 1.0)):
+        if key == "mujoco":
+            solver.data.qfrc_applied.reshape(-1, 6)[k, 0] = sign * force
+        else:
+            from robox3d._ffi import lib
+
+            lib.b3Body_ApplyForceToCenter(solver.particles[k], (sign * force, 0.0, 0.0), True)
+    solver.advance(solver.settings.time_step, 1)
+
+
+@pytest.mark.parametrize("key", [key for key in KEYS if key != "rapier"])
+@pytest.mark.parametrize("shapes", ["polyhedra", "spheres"])
+@pytest.mark.parametrize("bond", [1.0, 10.0])
+def test_that_a_doublet_parts_at_its_pull_off_force(key: str, shapes: Any, bond: float) -> None:
+    """Two cubes or balls without gravity, pulled apart by 0.95 and 1.05 of Bond number times weight."""
+    prepared = scene([cuboid(1, 1, 1)], 0.5, 2)
+    case = replace(prepared.case, shapes=shapes, bond_number=bond)
+    side = (np.pi / 6) ** (1 / 3) if shapes == "polyhedra" else 1.0
+    for share, parted in ((0.95, False), (1.05, True)):
+        solver = solver_of(key, replace(prepared, case=case))
+        solver.begin("rest")
+        solver.set_gravity(np.zeros(3))
+        solver.place(np.array([[0.0, 0.0, 10.0], [side, 0.0, 10.0]]), np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
+        solver.advance(solver.settings.time_step, 20)
+        for _ in range(800 if key == "mujoco" else 400):
+            pull_apart(key, solver, share * bond * MASS)
+        gap = float(np.linalg.norm(np.diff(solver.points, axis=0))) - side
+        assert bool(gap > 1.0) is parted
+        assert gap > -0.05

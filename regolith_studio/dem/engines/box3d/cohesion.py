@@ -1,4 +1,4 @@
-"""Cohesion between particles of Box3D: a pull-off force along the normal of each pair that touches."""
+"""Cohesion between particles of Box3D."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 from robox3d._ffi import ffi, lib
 
-from regolith_studio.dem.case import PreparedCase, bond_number
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.cohesion import RANGE, pull_off_forces, pulls
 
-RANGE = 0.004
-"""Gap in mean diameters across which particles attract: Box3D keeps the points of a contact within it."""
 CONTACT = np.dtype(
     {
         "names": ["contact", "first", "second", "manifold"],
@@ -23,17 +22,10 @@ POINTS, POINT_FLOATS, NORMAL, COUNT = 4, 14, 56, 66
 
 
 class Cohesion:
-    """Pulls together what touches, with one force for a pair, wherever and in how many points it touches.
-
-    The force is the Bond number times the weight of a mean particle, in proportion to the reduced diameter of
-    the pair, as that of Johnson, Kendall and Roberts is.
-    """
+    """Pulls together what touches."""
 
     def __init__(self, prepared: PreparedCase, bodies: Sequence[Any], shapes: Sequence[Any]) -> None:
-        contact, test = prepared.case.contact, prepared.case.test
-        mean = prepared.mean_diameter
-        bond = bond_number(prepared.surface_energy, mean, contact.density, test.gravity)
-        self.force, self.sizes = bond * np.pi / 6, prepared.diameters / mean
+        self.force, self.sizes = pull_off_forces(prepared)
         self.bodies, self.capacity = bodies, 0
         numbers = [shape.index1 for shape in shapes]
         self.particle = np.full(max(numbers) + 1, -1)
@@ -48,12 +40,9 @@ class Cohesion:
         touching = near.any(axis=1)
         weights = near[touching] / near[touching].sum(axis=1)[:, None]
         anchors = np.einsum("np,npk->nk", weights, gaps[touching, :, :6])
-        first, second = first[touching], second[touching]
-        reduced = 2 * self.sizes[first] * self.sizes[second] / (self.sizes[first] + self.sizes[second])
-        pulls = (self.force * reduced)[:, None] * manifolds[touching, NORMAL : NORMAL + 3]
-        forces = np.zeros((len(self.bodies), 6))
-        np.add.at(forces, first, np.column_stack([pulls, np.cross(anchors[:, :3], pulls)]))
-        np.add.at(forces, second, np.column_stack([-pulls, -np.cross(anchors[:, 3:], pulls)]))
+        pairs = np.column_stack([first[touching], second[touching]])
+        normals = manifolds[touching, NORMAL : NORMAL + 3]
+        forces = pulls(self.force, self.sizes, pairs, normals, (anchors[:, :3], anchors[:, 3:]))
         for body, force in zip(self.bodies, forces.tolist(), strict=True):
             lib.b3Body_ApplyForceToCenter(body, force[:3], True)
             lib.b3Body_ApplyTorque(body, force[3:], True)

@@ -15,9 +15,7 @@ REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves"),
     normal=N_("unilateral constraint without restitution; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction in an elliptic cone, one coefficient (the static one)"),
-    cohesion=N_(
-        "pull-off force 3/2 π w R*, shared by the contact points; little effect on a heap: use LAMMPS"
-    ),
+    cohesion=N_("one pull-off force for each pair that touches, none on walls and plate"),
     rolling=N_("Coulomb friction against rolling and spinning"),
     coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
     missing=N_("Hertz and Mindlin stiffness, restitution, different static and dynamic friction"),

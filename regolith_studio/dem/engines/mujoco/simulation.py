@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.cohesion import RANGE, pull_off_forces, pulls
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
@@ -28,11 +29,6 @@ CONTACT_SOFTNESS = (0.95, 0.99, 0.05, 0.5, 2.0)
 ARENA, ARENA_PER_PARTICLE = 64 << 20, 128 << 10
 """Bytes for contacts and solver: ten times what a run was seen to use, touched only as far as it is used.
 MuJoCo's own guess grows with the square of the number: 14 GB at 3,000 particles; 5,000 could not begin."""
-ADHESION_GAP = 0.001
-"""Distance over which cohesion acts, in mean diameters. Over ten times as much, grains that do not touch are
-drawn together, and heaps came out flatter with cohesion than without."""
-POINTS_PER_PAIR = 1.6
-"""Contact points of two touching polyhedra in the mean of a settled filling; they share the force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +125,6 @@ def _add_particles(
     turns: FloatArray,
 ) -> None:
     contact = _contact(prepared, settings, prepared.case.contact.static_friction)
-    pull = adhesion(prepared)
     spheres = prepared.case.shapes == "spheres"
     names: dict[tuple[int, float], list[str]] = {}
     for k in range(len(prepared)):
@@ -150,8 +145,7 @@ def _add_particles(
                 density=1.0,
                 contype=PARTICLE,
                 conaffinity=PARTICLE | WALL | PLATE,
-                gap=ADHESION_GAP if pull.any() else 0.0,
-                adhesion=float(pull[k]),
+                gap=RANGE if prepared.case.is_cohesive else 0.0,
                 **form,
                 **contact,
             )
@@ -178,19 +172,6 @@ def _set_inertia(body: "mujoco.MjsBody", inertia: FloatArray, size: float) -> No
     body.fullinertia = (inertia * size**5)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
 
 
-def adhesion(prepared: PreparedCase) -> FloatArray:
-    """Each particle's share of the pull-off force 3/2 pi w R* at a contact point, in the solver's unit.
-
-    The shares of two particles add up to the force exactly if they are equally large (R* = d/4); polyhedra
-    touch at several points, which share it.
-    """
-    points = POINTS_PER_PAIR if prepared.case.shapes == "polyhedra" else 1.0
-    test, contact = prepared.case.test, prepared.case.contact
-    force = contact.density * prepared.mean_diameter**3 * test.gravity
-    pull = 0.5 * 1.5 * np.pi * prepared.surface_energy * prepared.diameters / 4
-    return np.asarray(pull / force / points)
-
-
 MAX_MOVE = 0.01
 """Largest way in a step of all but one in a hundred particles, in mean diameters. Grains that slide faster
 bounce: on a slope of 50 degrees boxes lose a tenth of a friction of 0.8 with the default step, and a fortieth
@@ -211,6 +192,10 @@ class MujocoSolver:
         self.model, self.walls, self.top = built.model, built.walls, built.top
         self.data = mujoco.MjData(built.model)
         self.model.geom_surfacevel[self.walls] = 0.0
+        self.bodies = np.flatnonzero(self.model.body_jntnum == 1)
+        self.particle = np.full(self.model.nbody, -1)
+        self.particle[self.bodies] = np.arange(len(prepared))
+        self.pull_off = pull_off_forces(prepared) if prepared.case.is_cohesive else None
 
     @property
     def time(self) -> float:
@@ -258,9 +243,13 @@ class MujocoSolver:
 
     def advance(self, step: float, count: int) -> None:
         self.model.opt.timestep = step
-        if self.phase in ("fill", "lift"):
+        if self.phase in ("fill", "lift") or self.pull_off is not None:
             for _ in range(count):
-                self._limit_speed() if self.phase == "fill" else self._raise_walls(step)
+                if self.phase == "fill":
+                    self._limit_speed()
+                elif self.phase == "lift":
+                    self.data.mocap_pos[0, 2] += self.lift_speed * step
+                self._pull()
                 mujoco.mj_step(self.model, self.data)
         else:
             mujoco.mj_step(self.model, self.data, count)
@@ -306,8 +295,23 @@ class MujocoSolver:
         fast = speed > self.settings.max_fill_speed
         velocity[fast] *= (self.settings.max_fill_speed / speed[fast])[:, None]
 
-    def _raise_walls(self, step: float) -> None:
-        self.data.mocap_pos[0, 2] += self.lift_speed * step
+    def _pull(self) -> None:
+        """Draw together what touched in the last step, each pair at the middle of its points."""
+        if self.pull_off is None:
+            return
+        contact, n = self.data.contact, len(self.prepared)
+        pairs = self.particle[self.model.geom_bodyid[contact.geom]]
+        near = (contact.dist <= RANGE) & (pairs >= 0).all(axis=1)
+        keys, place = np.unique(pairs[near] @ [n, 1], return_inverse=True)
+        normals, points = np.zeros((len(keys), 3)), np.zeros((len(keys), 3))
+        np.add.at(normals, place, contact.frame[near, :3])
+        np.add.at(points, place, contact.pos[near])
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        points /= np.bincount(place, minlength=len(keys))[:, None]
+        pairs = np.column_stack(np.divmod(keys, n))
+        centres = self.data.xipos[self.bodies]
+        arms = points - centres[pairs[:, 0]], points - centres[pairs[:, 1]]
+        self.data.xfrc_applied[self.bodies] = pulls(*self.pull_off, pairs, normals, arms)
 
     def _check_state(self) -> None:
         bad = self.data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
