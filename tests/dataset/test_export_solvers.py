@@ -279,9 +279,12 @@ def test_that_shapes_beyond_the_lines_of_lammps_are_refused(tmp_path: Path) -> N
 # --- MuJoCo
 
 
-def test_that_mujoco_finds_the_masses_and_inertia_of_the_dataset(dataset: Dataset, tmp_path: Path) -> None:
+def test_that_mujoco_finds_the_masses_and_inertia_of_the_dataset_and_rolling_resistance(
+    dataset: Dataset, tmp_path: Path
+) -> None:
     mujoco = pytest.importorskip("mujoco")
-    folder = exported(dataset, "mujoco", tmp_path / "mujoco")
+    options = OPTIONS.replaced(rolling_friction=0.2)
+    folder = exported(dataset, "mujoco", tmp_path / "mujoco", options)
     model = mujoco.MjModel.from_xml_path(str(folder / "particles.xml"))
     bodies = pack_on_lattice(dataset, OPTIONS)
     assert model.nbody == len(bodies) + 1
@@ -291,6 +294,8 @@ def test_that_mujoco_finds_the_masses_and_inertia_of_the_dataset(dataset: Datase
         expected = moments(dataset, which, masses[index], bodies.scale[index] * 1e3)
         assert np.sort(model.body_inertia[index + 1]) == relative(expected, rel=1e-5)
     assert model.body_pos[1:] == pytest.approx(bodies.position * 1e3, rel=1e-5)
+    assert model.geom_condim[1:].tolist() == [6] * (model.ngeom - 1)
+    assert model.geom_friction[1:, 2] == relative(np.full(model.ngeom - 1, 100.0 * bodies.diameter.mean()))
 
 
 def test_that_mujoco_lets_the_particles_fall_at_9_81(dataset: Dataset, tmp_path: Path) -> None:

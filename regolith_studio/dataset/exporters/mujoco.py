@@ -101,7 +101,8 @@ def mjcf_model(
         for name, part in zip(_mesh_names(mesh, shapes[which]), shapes[which].parts, strict=True)
     ]
     reach = float(np.abs(bodies.position).max() * units.per_metre) * 4
-    text = _model(name, contact, test, units, reach, meshes, lines)
+    rolling = contact.rolling_friction / 2 * float(bodies.diameter.mean()) * units.per_metre
+    text = _model(name, contact, test, units, reach, rolling, meshes, lines)
     return text, _NOTE.format(length=units.length, mass=units.mass)
 
 
@@ -126,6 +127,7 @@ def _model(
     test: LiftingCylinderTest,
     units: _Units,
     reach: float,
+    rolling: float,
     meshes: list[str],
     bodies: list[str],
 ) -> str:
@@ -139,8 +141,8 @@ def _model(
             '  <compiler inertiafromgeom="auto" boundmass="0" boundinertia="0"/>',
             f'  <statistic extent="{reach!r}"/>',
             "  <default>",
-            f'    <default class="grain"><geom density="{density!r}" condim="3" '
-            f'friction="{contact.dynamic_friction!r} 0 0"/></default>',
+            f'    <default class="grain"><geom density="{density!r}" condim="{6 if rolling else 3}" '
+            f'friction="{contact.dynamic_friction!r} {rolling!r} {rolling!r}"/></default>',
             "  </default>",
             "  <asset>",
             *meshes,
@@ -174,7 +176,12 @@ EXPORTER = Exporter(
     key="mujoco",
     label="MuJoCo (MJCF)",
     units=N_("mm, mg, ms, or um, pg, ms below some 5 um; coarse graining applied"),
-    carries=(N_("drawn particles: shape, size, orientation"), N_("mass and inertia"), N_("friction")),
+    carries=(
+        N_("drawn particles: shape, size, orientation"),
+        N_("mass and inertia"),
+        N_("friction"),
+        N_("rolling resistance"),
+    ),
     loses=(
         N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),
         N_("Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints"),
