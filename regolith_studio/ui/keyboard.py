@@ -64,11 +64,6 @@ class KeyboardFocus(QObject):
         app.focusChanged.connect(self._move)
         app.focusWindowChanged.connect(self._watch)
 
-    @property
-    def by_keys(self) -> bool:
-        """Whether the keyboard was used last."""
-        return self._keys
-
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         match event.type():
             case QEvent.Type.MouseButtonPress:

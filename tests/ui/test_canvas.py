@@ -55,10 +55,10 @@ def test_that_the_same_is_drawn_as_by_the_widget_of_pyqtgraph(shown, log, act):
         if act == "is set":
             canvas.setRange(xRange=(0.0, 12.0), yRange=(1.0, 7.0), padding=0.0, disableAutoRange=True)
         if act == "is locked":
-            canvas.setAspectLocked(True)
-            canvas.setLimits(xMin=-0.5)
+            canvas.getViewBox().setAspectLocked(True)
+            canvas.getViewBox().setLimits(xMin=-0.5)
         pictures.append(shot(canvas, act == "follows"))
-        ranges.append(canvas.viewRange())
+        ranges.append(canvas.getViewBox().viewRange())
     assert np.allclose(*ranges)
     assert pictures[0] == pictures[1]
 

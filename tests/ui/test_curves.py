@@ -18,7 +18,7 @@ def test_that_points_without_a_place_on_the_axes_leave_the_others_in_sight(shown
     plot.set_curves([PlotCurve("nowhere", "#000000", (1.0, 2.0), values, markers=True), seen])
     app.processEvents()
     plot.grab()  # the range follows when it is painted
-    (left, right), _ = plot.canvas.viewRange()
+    (left, right), _ = plot.canvas.getViewBox().viewRange()
     assert left <= 1.0
     assert right >= 2.0
     assert [items.points.getData()[0].size for _, items in plot._drawn] == [0, 2]
@@ -34,7 +34,7 @@ def test_that_no_tick_lies_between_steps_that_are_counted(shown, app, x, between
     app.processEvents()
     plot.grab()
     axis = plot.canvas.getAxis("bottom")
-    (left, right), _ = plot.canvas.viewRange()
+    (left, right), _ = plot.canvas.getViewBox().viewRange()
     ticks = [value for _, values in axis.tickValues(left, right, axis.width()) for value in values]
     assert any(not float(tick).is_integer() for tick in ticks) is between
 
@@ -79,7 +79,7 @@ def test_that_lines_and_points_stand_at_the_logarithm_and_have_gaps_where_there_
     lines = [((a.x, a.y), (b.x, b.y)) for a, b in pairwise(at) if b.isLineTo() and (a.x, a.y) != (b.x, b.y)]
     assert lines == [((3.0, -3.0), (4.0, 1.0))]
     plot.canvas.grab()  # the range follows the curves when the plot is painted
-    _, (low, high) = plot.canvas.viewRange()
+    _, (low, high) = plot.canvas.getViewBox().viewRange()
     assert low < -3.0 < 2.0 < high < 4.0
 
 

@@ -249,8 +249,8 @@ def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
     from regolith_studio.ui.widgets.plots.curves import CurvePlot
 
     plot = shown(CurvePlot("degree", "amplitude", "nothing", log_y=True))
-    plot.canvas.setYRange(-1e4, 1e4)
+    plot.canvas.getViewBox().setYRange(-1e4, 1e4)
     assert max(map(abs, plot.canvas.getAxis("left").range)) <= MAX_DECADES
-    plot.canvas.setXRange(0, 1e4)
+    plot.canvas.getViewBox().setXRange(0, 1e4)
     assert plot.canvas.getAxis("bottom").range[1] >= 1e4
     plot.set_theme(plot.theme)

@@ -190,7 +190,7 @@ class LossCurvePanel(QWidget):
         super().__init__()
         self.setObjectName("loss_curve")
         self.plot = CurvePlot(tr("Step"), tr("Loss"), tr("The loss appears when the coarsening begins."))
-        self.plot.canvas.setLimits(xMin=-0.5)  # there is no step before the first
+        self.plot.canvas.getViewBox().setLimits(xMin=-0.5)  # there is no step before the first
         vbox(self.plot, parent=self)
         self._results: Results | None = None
 
@@ -349,7 +349,7 @@ class SectionPanel(QWidget):
         self.place = named(NumberSlider(PLACE), "section_place")
         self.plot = CurvePlot("y [µm]", "z [µm]", tr("Turn on Section in the tool bar."))
         self.plot.setAccessibleName(tr("Cross-section"))
-        self.plot.canvas.setAspectLocked(True)
+        self.plot.canvas.getViewBox().setAspectLocked(True)
         self._place()
         self.direction.currentIndexChanged.connect(lambda _: three_views.cut_across(self.direction.value()))
         self.flipped.toggled.connect(self._sections.set_flipped)

@@ -199,8 +199,8 @@ class AnnealingView(QWidget):
         self.loss.set_curves(curves)
         self.loss.set_marker(float(number))
         highest = max(step.evaluation.loss for step in lesson.steps)
-        self.loss.canvas.setXRange(0, len(lesson.steps) - 1, padding=0.01)
-        self.loss.canvas.setYRange(0.0, 1.6 * highest, padding=0.0)
+        self.loss.canvas.getViewBox().setXRange(0, len(lesson.steps) - 1, padding=0.01)
+        self.loss.canvas.getViewBox().setYRange(0.0, 1.6 * highest, padding=0.0)
 
     def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[PlotCurve]:
         curves = []
@@ -235,8 +235,8 @@ class AnnealingView(QWidget):
             ]
         )
         self.chance.set_marker(float(number))
-        self.chance.canvas.setXRange(0, len(lesson.steps) - 1, padding=0.01)
-        self.chance.canvas.setYRange(0.0, 1.0, padding=0.02)
+        self.chance.canvas.getViewBox().setXRange(0, len(lesson.steps) - 1, padding=0.01)
+        self.chance.canvas.getViewBox().setYRange(0.0, 1.0, padding=0.02)
 
     def _plot_terms(self, step: AnnealingStep) -> None:
         lesson, theme = self._lesson, self._theme

@@ -269,7 +269,7 @@ class DegreesView(QWidget):
         radial = tuple(max(100 * step.radial_error, 1e-4) for step in known)
         curves.append(PlotCurve(tr("radius (rms)"), self._theme.particle, x, radial, markers=True))
         self.errors.set_curves(curves)
-        self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
+        self.errors.canvas.getViewBox().setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
 
     def _arrange(self) -> None:
         views, texts = list(self.frames.values()), [self.sentence, self.formula]

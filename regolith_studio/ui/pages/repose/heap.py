@@ -79,7 +79,7 @@ class SectionPlot(Plot):
         self._cuts: dict[str, pg.InfiniteLine] = {}
         self._discs: Discs | None = None
         super().__init__("x [mm]", "z [mm]", tr("Run a test or open positions to see its section."))
-        self.canvas.setAspectLocked(True)
+        self.canvas.getViewBox().setAspectLocked(True)
         self.canvas.getViewBox().sigResized.connect(lambda *_: self._frame())
 
     @property

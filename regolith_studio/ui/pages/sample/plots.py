@@ -121,7 +121,7 @@ class ScatterPanel(QWidget):
         self.plot.set_legend(named if len(groups) > 1 else [])
         count = len(self._entries)
         self.plot.set_hint(tr_count(N_("1 particle"), N_("{count} particles"), count))
-        canvas.enableAutoRange()
+        canvas.getViewBox().enableAutoRange()
         self._place_zingg()
 
     def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:

@@ -130,26 +130,6 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         """Set the visible range, see :meth:`pyqtgraph.ViewBox.setRange`."""
         self._box.setRange(*ranges, **options)
 
-    def setXRange(self, low: float, high: float, padding: float | None = None) -> None:
-        self._box.setXRange(low, high, padding=padding)
-
-    def setYRange(self, low: float, high: float, padding: float | None = None) -> None:
-        self._box.setYRange(low, high, padding=padding)
-
-    def viewRange(self) -> list[list[float]]:
-        seen: list[list[float]] = self._box.viewRange()
-        return seen
-
-    def enableAutoRange(self) -> None:
-        self._box.enableAutoRange()
-
-    def setLimits(self, **limits: float | None) -> None:
-        """Set the limits of the axes, see :meth:`pyqtgraph.ViewBox.setLimits`."""
-        self._box.setLimits(**limits)
-
-    def setAspectLocked(self, locked: bool) -> None:
-        self._box.setAspectLocked(locked)
-
 
 DIGITS = (((2, 3, 4, 5, 6, 7, 8, 9), math.log10(10 / 9)), ((2, 5), math.log10(2)), ((3,), math.log10(3)))
 """Leading digits of the numbers at a logarithmic axis, and their smallest distance in decades."""
