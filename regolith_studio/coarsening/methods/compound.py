@@ -9,12 +9,12 @@ import numpy as np
 from regolith_studio.coarsening.core.line_overlap import compound_distance
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.optimiser.compound_search import (
+    MIN_FACETS,
     CompoundCandidate,
     asked_terms,
     compound_of,
     search_compound,
 )
-from regolith_studio.coarsening.optimiser.compound_starts import MIN_FACETS
 from regolith_studio.coarsening.optimiser.search import EFFORTS as CONVEX_EFFORTS
 from regolith_studio.coarsening.optimiser.search import TERMS, Search, SearchEffort
 from regolith_studio.coarsening.progress import MethodStep

@@ -8,8 +8,7 @@ import trimesh
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.line_overlap import compound_distance
-from regolith_studio.coarsening.optimiser.compound_search import numbers_of_parts
-from regolith_studio.coarsening.optimiser.compound_starts import shared_out
+from regolith_studio.coarsening.optimiser.compound_search import numbers_of_parts, shared_out
 from regolith_studio.coarsening.stopping_criteria import coarsen_below
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
