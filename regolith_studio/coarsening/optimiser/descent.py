@@ -30,7 +30,6 @@ from regolith_studio.coarsening.optimiser.body import (
     N_TERMS,
     RATIO,
     SHORTEST,
-    SURFACE,
     Body,
     BodyScratch,
     Prices,
@@ -40,11 +39,11 @@ from regolith_studio.coarsening.optimiser.body import (
 )
 from regolith_studio.coarsening.optimiser.followed_boxes import add_box, check_boxes
 from regolith_studio.coarsening.optimiser.memory import Memory, Rays, Steps
+from regolith_studio.coarsening.optimiser.metric import fill_first_metric, update_metric
 from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import exits
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
-from regolith_studio.geometry.vectors import cross, dot
 
 LOCK = 100.0
 """Price of a term that is kept exactly, in units of the Jaccard distance: multipliers of terms that can be
@@ -57,14 +56,12 @@ way between them keeps rivals that only come near from deciding over steps."""
 CHECK_EVERY, CHECK_SHARE = 8, 6
 """Accepted steps between two searches for smaller boxes: at least so many, and a half-space in so many, as a
 search takes longer than a step where there are many."""
-SOFTNESS = 0.05
-"""Added to second derivatives of a union: hidden facets have none of their own."""
 MET = 1e-9
 """Residuals of terms at a kink after the corrections of a step."""
-CORRECTIONS, CURVATURE = 5, 0.03
+CORRECTIONS = 5
 MAX_RADIUS, RESTART_RADIUS, MIN_RADIUS = 0.25, 0.02, 2e-4
 SHRINK, GOOD = 0.35, 0.5
-MIN_GAIN = 1e-7
+MIN_GAIN = 1e-6
 """The descent ends where a step brings less of the Jaccard distance."""
 NEAR_KINK = -0.1
 """Rows of the middle edge and of the next vertex with a larger residual take part in the steps."""
@@ -139,7 +136,7 @@ def descend(
     fill_overlap(here, here.parts, rays, work)
     pull = 0.0 if restoring else prices.overlap
     fill_overlap_gradient(here, here.parts, rays, pull, work, work.gradient)
-    fill_first_metric(here, prices.overlap, held, steady, work)
+    fill_first_metric(here, rays, prices.overlap, held, steady, work)
     merit = merit_of(here, prices)
     failures, small = 0, 0
     for _ in range(max_steps):
@@ -156,7 +153,7 @@ def descend(
         else:
             radius, failures = SHRINK * min(radius, length if length > 0.0 else radius), failures + 1
             if radius < MIN_RADIUS:
-                fill_first_metric(here, prices.overlap, held, steady, work)
+                fill_first_metric(here, rays, prices.overlap, held, steady, work)
                 radius, failures, small = RESTART_RADIUS, failures + 2, small + (failures > 3)
         done = small >= 2 or failures > 8
         if needs_box and (unchecked >= check_every or (done and unchecked > 0)):
@@ -246,51 +243,6 @@ def merit_of(body: Body, prices: Prices) -> float:
     for b in range(1, body.counts[N_BOXES]):
         total += LOCK * max(0.0, PRESSING - body.slack[b])
     return float(total)
-
-
-@kernel_noalloc
-def fill_first_metric(body: Body, price: float, held: int, steady: bool, work: Steps) -> None:
-    """A diagonal guess of the inverse second derivative: large facets resist, held ones do not move."""
-    n = len(body.offsets)
-    floor = max(0.3 * body.numbers[SURFACE] / n, 1e-12)
-    work.metric[:, :] = 0.0
-    for i in range(n):
-        shift = CURVATURE / max(body.areas[i], floor) / price if i >= held and is_free(i, body.parts) else 0.0
-        if steady:
-            shift *= min(1.0, body.areas[i] / floor)
-        for c in range(3):
-            j = 3 * i + c
-            work.diagonal[j] = work.metric[j, j] = shift if c == 0 else 3.0 * shift
-        if shift > 0.0:
-            _fill_metric_of_plane(body, body.parts, i, price, work)
-
-
-@kernel_noalloc
-def _fill_metric_of_plane(body: Body, parts: Parts | None, i: int, price: float, work: Steps) -> None:
-    """Of a union, the inverse second derivative for half-space i alone: lines know it."""
-    if parts is None:
-        return
-    union = (1.0 + body.numbers[BODY_VOLUME]) / (2.0 - body.numbers[JACCARD])
-    block = parts.curvature[i]
-    one = (block[0, 0] / union + SOFTNESS, block[0, 1] / union, block[0, 2] / union)
-    two = (block[1, 0] / union, block[1, 1] / union + SOFTNESS, block[1, 2] / union)
-    three = (block[2, 0] / union, block[2, 1] / union, block[2, 2] / union + SOFTNESS)
-    columns = (cross(two, three), cross(three, one), cross(one, two))
-    size = dot(one, columns[0]) * price
-    for b in range(3):
-        for c in range(3):
-            value = columns[0][c] if b == 0 else (columns[1][c] if b == 1 else columns[2][c])
-            work.metric[3 * i + c, 3 * i + b] = value / size
-        work.diagonal[3 * i + b] = work.metric[3 * i + b, 3 * i + b]
-
-
-@kernel_noalloc
-def is_free(i: int, parts: Parts | None) -> bool:
-    """Whether half-space i may move: those between parts that touch may not."""
-    free = True
-    if parts is not None:
-        free = parts.partner[i] < 0
-    return free
 
 
 @kernel
@@ -538,49 +490,3 @@ def _gather_kinks(body: Body, prices: Prices, tied: float, work: Steps) -> tuple
             worst = max(worst, abs(work.slopes[count]))
             count += 1
     return count, worst
-
-
-@kernel_noalloc
-def update_metric(here: Body, there: Body, m: int, work: Steps) -> None:
-    """BFGS update of the inverse second derivative of the Lagrangian, where its curvature is positive."""
-    size = len(work.gradient)
-    for j in range(size):
-        work.change[j] = work.trial_gradient[j] - work.gradient[j]
-    _add_row_changes(here, there, m, work)
-    product, squares, changes = 0.0, 0.0, 0.0
-    for j in range(size):
-        product += work.total[j] * work.change[j]
-        squares += work.total[j] * work.total[j]
-        changes += work.change[j] * work.change[j]
-    if product <= 1e-3 * np.sqrt(squares * changes):
-        return
-    turned, bend = work.step, 0.0  # the step has done its work
-    for j in range(size):
-        turned[j] = 0.0
-    for i in range(size):
-        factor = work.change[i]
-        for j in range(size):
-            turned[j] += factor * work.metric[i, j]
-    for j in range(size):
-        bend += work.change[j] * turned[j]
-    scale = (1.0 + bend / product) / product
-    for i in range(size):
-        one, two = work.total[i], turned[i] / product
-        for j in range(size):
-            work.metric[i, j] += scale * one * work.total[j] - two * work.total[j] - one * turned[j] / product
-
-
-@kernel_noalloc
-def _add_row_changes(here: Body, there: Body, m: int, work: Steps) -> None:
-    """Add the multipliers' share of the change of the Lagrangian's gradient."""
-    size = len(work.change)
-    for r in range(m):
-        factor, b = work.multipliers[r], r - N_FIXED + 1
-        if factor == 0.0 or FIRST_TIE <= r < N_FIXED:
-            continue  # vertices that tie may be others by now
-        if r < N_FIXED:
-            for j in range(size):
-                work.change[j] += factor * (there.rows[r, j] - here.rows[r, j])
-        elif there.slack[b] != GONE and here.slack[b] != GONE:
-            for j in range(size):
-                work.change[j] -= factor * (there.rival_rows[b, j] - here.rival_rows[b, j])

@@ -51,6 +51,8 @@ class Steps(NamedTuple):
         Where each ray leaves the polyhedron, shape (k,).
     charges
         Shape (n, 4).
+    curvature
+        Second derivatives of the overlap with each plane alone, (n, 3, 3).
     """
 
     metric: FloatArray
@@ -72,6 +74,7 @@ class Steps(NamedTuple):
     radius: FloatArray
     plane: IntArray
     charges: FloatArray
+    curvature: FloatArray
 
 
 class Memory(NamedTuple):
@@ -111,6 +114,7 @@ def memory_for(n: int, n_rays: int, planes: Planes | None = None) -> Memory:
         np.empty(n_rays),
         np.empty(n_rays, np.int64),
         np.empty((n, 4)),
+        np.empty((n, 3, 3)),
     )
     boxes, counts = box_memory(n_facets, 2 * n), np.zeros(2, np.int64)
     return Memory(
