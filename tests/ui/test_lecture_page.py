@@ -20,6 +20,7 @@ from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
 from regolith_studio.ui.pages.lecture import PAGE, texts
 from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
+from regolith_studio.ui.views.view import ViewFrame
 from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
 from regolith_studio.ui.widgets.plots.base import Plot
@@ -339,6 +340,14 @@ def test_that_all_plots_of_a_lesson_are_seen_at_once_in_a_small_window(page, pla
     assert plots
     for each in plots:
         assert each.visibleRegion().boundingRect().size() == each.size(), each.objectName()
+
+
+def test_that_a_view_keeps_a_third_of_a_low_window(page, app):
+    page.resize(960, 540)
+    app.processEvents()
+    frames = [each for each in page.findChildren(ViewFrame) if each.isVisible()]
+    assert frames
+    assert all(frame.height() >= page.window().height() // 3 for frame in frames)
 
 
 def test_that_losses_that_differ_by_rounding_neither_fall_nor_have_sixteen_digits():

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QMainWindow, QMenu, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
@@ -32,6 +33,7 @@ from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plots import PlotArea
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
+from regolith_studio.ui.views.view import keep_views_high
 from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.table import ParticleTable, particle_columns
 
@@ -303,6 +305,10 @@ class ExplorePage(PageWidget):
             columns.setStretchFactor(part, share)
         columns.setObjectName("explore_columns")
         hbox(columns, parent=self)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        keep_views_high(self)
 
     def _wire(self, context: PageContext) -> None:
         session, bindings = context.session, context.bindings

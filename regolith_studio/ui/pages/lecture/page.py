@@ -18,6 +18,7 @@ from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView, PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, font_share
 from regolith_studio.ui.translation import rich, tr
+from regolith_studio.ui.views.view import keep_views_high
 from regolith_studio.ui.widgets.fields import ChoiceBox
 
 FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
@@ -274,6 +275,7 @@ class LecturePage(PageWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
+        keep_views_high(self)
         if self._shown_size not in (0.0, self._size()):
             self._show_font_size()
 
