@@ -270,6 +270,13 @@ def test_that_the_verdict_on_one_particle_never_stands_for_another(shown):
     assert "not finished" in panel.sentence.text()
 
 
+def test_that_presets_are_losses_and_one_without_is_listed_only_while_it_is_in_use(shown):
+    panel = shown(LossPanel())
+    assert panel.preset.findData("quadric") < 0
+    panel.setValue({"weights": presets()["quadric"].weights, "preset": "quadric"})
+    assert panel.preset.currentData() == "quadric"
+
+
 def test_that_loss_and_errors_of_the_best_polyhedron_so_far_are_live(shown):
     card, bars, table = shown(AssessmentPanel()), shown(ErrorBarsPanel()), shown(DescriptorTablePanel())
     choices, target = Choices(method="annealing", selected="a"), icosphere(2)

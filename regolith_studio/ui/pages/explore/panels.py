@@ -149,7 +149,8 @@ class LossPanel(QWidget):
         super().__init__()
         self.setObjectName("loss")
         self._own = UserPresets("weights")
-        self._preset = self._chosen = next(iter(presets()))
+        losses = (key for key, each in presets().items() if not each.weights.all_zero)
+        self._preset = self._chosen = next(losses)
         self._known: dict[str, Preset] = {}
         self._keep: frozenset[str] | None = None
         self.bar = PresetBar("preset", tr("Preset of weights"), heading(tr("Weights of the loss (Eq. 9)")))
@@ -174,6 +175,8 @@ class LossPanel(QWidget):
             slider.setValue(value["weights"][key])
         self._keep = value["weights"].keep
         self._preset = value["preset"]
+        if self.bar.box.findData(self._preset) < 0:
+            self._list()
         self._chosen = self._source(value["weights"])
         self._show_mark()
 
@@ -222,6 +225,7 @@ class LossPanel(QWidget):
                 PresetEntry(key, each.label if key.startswith(OWN) else tr(each.label), tr(each.origin), own)
                 for key, each in found.items()
                 for own in (key.startswith(OWN),)
+                if not each.weights.all_zero or key == self._preset  # a method without a loss
             ]
         )
 
