@@ -344,9 +344,9 @@ def drum(
             turning = DrumRotation(rpm_of(froude, request.case.test), turns, moments)
         request = replace(request, case=replace(request.case, drum=turning))
     done = _simulate(dataset, output, request, filling, overwrite, jobs)
-    document, found = dict(done.document), done.measurement
-    if measured is not None and isinstance(found, DrumMeasurement):
-        document["measured"] = compare_angles(found, measured, measured_error)
+    document, angles = dict(done.document), done.measurement
+    if measured is not None and isinstance(angles, DrumMeasurement):
+        document["measured"] = compare_angles(angles, measured, measured_error)
     if json:
         print_json(document)
         return

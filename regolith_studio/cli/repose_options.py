@@ -80,12 +80,12 @@ class CaseOptions:
             test_values = dataclasses.asdict(DRUM) | test_values
         test = settings_from(LiftingCylinderTest, test_values, "value of the test")
         contact = settings_from(ContactParameters, values(self.contact, "value"), "contact parameter")
-        wanted = settings_from(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case")
+        simulated = settings_from(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case")
         if drum is not None:
             turning = settings_from(DrumRotation, drum, "value of the drum")
-            wanted = dataclasses.replace(wanted, drum=turning)
+            simulated = dataclasses.replace(simulated, drum=turning)
         return ReposeRequest(
-            wanted,
+            simulated,
             self.engine,
             settings_from(engine.Settings, values(self.set_, "setting"), f"setting of {engine.label}"),
             evaluation_settings(self.measure),

@@ -177,10 +177,10 @@ def check_run(
     - ``lowest``: height of each particle's lowest point above the plate in mean diameters, shape (n,).
     - ``problems``: sentences of the engine, which come first.
     """
-    kept, sentences = int(np.count_nonzero(heights > -1.0)), list(problems)
-    if kept < len(heights):
+    present, sentences = int(np.count_nonzero(heights > -1.0)), list(problems)
+    if present < len(heights):
         template = N_("{lost} of {count} particles fell through the plate.")
-        sentences.append(Message(template, lost=len(heights) - kept, count=len(heights)))
+        sentences.append(Message(template, lost=len(heights) - present, count=len(heights)))
     largest, deep = float(overlaps.max(initial=0.0)), _deep_share(overlaps)
     sentences += _overlap_problems(largest, deep)
     if energy_gain > MAX_ENERGY_GAIN:
@@ -190,7 +190,7 @@ def check_run(
         sentences.append(Message(N_("The heap was still moving at the end.")))
     return RunChecks(
         particles_in=len(heights),
-        particles_out=kept,
+        particles_out=present,
         mean_overlap=float(overlaps.mean()) if len(overlaps) else 0.0,
         max_overlap=largest,
         deep_contacts=deep,

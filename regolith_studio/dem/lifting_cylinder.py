@@ -431,14 +431,14 @@ def engine_state(run: LiftingRun) -> EngineState:
 
 def particles_of(run: LiftingRun) -> ParticleState:
     """The particles in SI units."""
-    gone = run.phase == "rest"
+    removed = run.phase == "rest"
     state = ParticleState(
         points=run.solver.points * run.units.length,
         diameters=run.prepared.diameters,
         orientations=run.solver.orientations,
         class_index=run.prepared.class_index,
         time=run.solver.time * run.units.time,
-        wall=float("inf") if gone else run.solver.rim * run.units.length,
+        wall=float("inf") if removed else run.solver.rim * run.units.length,
         phase=run.phase,
     )
     return run.course.in_plane(run, state)

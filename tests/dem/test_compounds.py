@@ -49,8 +49,8 @@ def test_that_a_body_of_mujoco_has_mass_and_inertia_of_the_union(prepared: Prepa
     volumes = np.pi / 6 * (prepared.diameters / prepared.mean_diameter) ** 3
     assert model.body_mass[bodies] == pytest.approx(volumes)
     for k in np.flatnonzero(prepared.class_index == 0).tolist():
-        wanted = elbow_moments() * volumes[k] ** (5 / 3)
-        assert np.sort(model.body_inertia[bodies[k]]) == relative(wanted, rel=1e-9)
+        expected = elbow_moments() * volumes[k] ** (5 / 3)
+        assert np.sort(model.body_inertia[bodies[k]]) == relative(expected, rel=1e-9)
         assert model.body_ipos[bodies[k]] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
 
 

@@ -68,8 +68,8 @@ class RapierSolver:
         """Handles of the bodies, and the threads and numerics of the world."""
         bodies = self.world.rigid_bodies
         handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(len(bodies))]
-        found = [bodies[handle] for handle in handles]
-        self.particles, (self.cylinder, self.plate, *self.lids) = found[: self.n], found[self.n :]
+        handled = [bodies[handle] for handle in handles]
+        self.particles, (self.cylinder, self.plate, *self.lids) = handled[: self.n], handled[self.n :]
         self.world.set_num_threads(int(os.environ.get(ENGINE_THREADS, "1")))
         numerics = self.world.integration_parameters
         # heaps are calmer and overlap less with both; sharp columns walk and fall with recycled contacts
