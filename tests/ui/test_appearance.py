@@ -4,7 +4,7 @@ import time
 
 import pytest
 from PySide6.QtCore import QEvent, QObject, QPoint
-from PySide6.QtGui import QColor, QFontMetrics
+from PySide6.QtGui import QColor, QFont, QFontMetrics
 from PySide6.QtWidgets import (
     QCheckBox,
     QDialog,
@@ -33,6 +33,7 @@ from regolith_studio.ui.theme import (
     current_theme,
     pixmap,
 )
+from regolith_studio.ui.widgets.fields import ElidedComboBox
 
 
 @pytest.fixture
@@ -271,3 +272,15 @@ def test_that_a_check_box_stands_out_as_controls_must(app, shown, theme, checked
     seen = {image.pixelColor(x, y).getRgbF()[:3] for x in range(image.width()) for y in range(image.height())}
     ground = QColor(theme.window).getRgbF()[:3]
     assert max(contrast(colour, ground) for colour in seen) >= 3.0
+
+
+def test_that_a_combo_box_becomes_as_small_as_its_letters_again(shown):
+    box = shown(ElidedComboBox())
+    box.addItem("Exact descriptors")
+    before, usual = box.minimumSizeHint(), box.font()
+    large = QFont(usual)
+    large.setPointSizeF(2.0 * usual.pointSizeF())
+    box.setFont(large)
+    assert box.minimumSizeHint().height() > before.height()
+    box.setFont(usual)
+    assert box.minimumSizeHint() == before

@@ -47,6 +47,11 @@ class ElidedComboBox(QComboBox):
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setMinimumContentsLength(12)
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:  # for which Qt forgets but one of its two size hints
+            super().changeEvent(QEvent(QEvent.Type.StyleChange))
+
     def whole_width(self) -> int:
         labels = (self.itemText(row) for row in range(self.count()))
         widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
