@@ -33,7 +33,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.startup import make_application, open_window
 from regolith_studio.ui.translation import install_translators, remove_translators
-from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines
+from regolith_studio.ui.widgets.formula import all_outlines
 from regolith_studio.ui.widgets.toast import Toast
 
 
@@ -77,9 +77,8 @@ def nothing_left_behind(request):
     threads, windows = set(threading.enumerate()), set(QApplication.topLevelWidgets())
     yield
     request.node.funcargs.clear()  # pytest holds on to them longer than it needs
-    for each in threading.enumerate():
-        if each.name == THREAD_NAME:  # one line may be under way
-            each.join(20.0)
+    for each in set(threading.enumerate()) - threads:
+        each.join(20.0)  # a line of a formula, or the start of a reader, may be under way
     _settle()
     left = _newcomers() + [each.name for each in threading.enumerate() if each not in threads]
     left += [_name(each) for each in QApplication.topLevelWidgets() if each not in windows]
