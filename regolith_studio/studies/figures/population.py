@@ -205,7 +205,7 @@ def matching_figure(found: Match) -> Figure:
     masses.set_xlabel("mass in the mixture, %")
     for size in found.target_sizes:
         sizes.axvline(size, color="#888888", linestyle=":")
-    sizes.set(xscale="log", xlabel=f"{found.keys[0]}, um: 10, 50, 90 % of the mass".replace("%", r"\%"))
+    sizes.set(xscale="log", xlabel=f"{found.keys[0].replace('_', ' ')} (µm) of\n10, 50 and 90 % of the mass")
     near.set_yticks(rows, names)
-    near.invert_yaxis()
+    near.set_ylim(len(parts) - 0.5, -0.5)
     return figure
