@@ -1636,16 +1636,16 @@
         <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
     </message>
     <message>
-        <source>Distance in floors</source>
-        <translation>Abstand in Rauschgrenzen</translation>
-    </message>
-    <message>
         <source>Distances</source>
         <translation>Abstände</translation>
     </message>
     <message>
         <source>Distances and masses</source>
         <translation>Abstände und Massen</translation>
+    </message>
+    <message>
+        <source>Distances in floors; 1 is the scatter of the sample itself.</source>
+        <translation>Abstände in Rauschgrenzen; 1 ist die Streuung der Probe selbst.</translation>
     </message>
     <message>
         <source>Distances of the draws</source>
@@ -1862,10 +1862,6 @@
     <message>
         <source>Energy distance</source>
         <translation>Energiedistanz</translation>
-    </message>
-    <message>
-        <source>Energy distance in floors; 1 is that of samples of the target itself.</source>
-        <translation>Energieabstand in Rauschgrenzen; 1 ist der von Stichproben des Ziels selbst.</translation>
     </message>
     <message>
         <source>Engine</source>
@@ -2670,6 +2666,10 @@
     <message>
         <source>Hysteresis: voxels from this probability on belong to a grain if they are connected to some from the level on; 0 for none.</source>
         <translation>Hysterese: Voxel ab dieser Wahrscheinlichkeit gehören zu einem Korn, wenn sie mit Voxeln ab der Schwelle zusammenhängen; 0 für keine.</translation>
+    </message>
+    <message>
+        <source>In floors</source>
+        <translation>In Rauschgrenzen</translation>
     </message>
     <message>
         <source>In size classes</source>
@@ -7536,8 +7536,8 @@
         <translation>von</translation>
     </message>
     <message>
-        <source>g in 100 g of the mixture</source>
-        <translation>g in 100 g der Mischung</translation>
+        <source>g in 100 g</source>
+        <translation>g in 100 g</translation>
     </message>
     <message>
         <source>glTF (Blender)</source>

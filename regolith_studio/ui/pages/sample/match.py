@@ -22,7 +22,7 @@ from regolith_studio.ui.widgets.fields import ElidedComboBox
 from regolith_studio.ui.widgets.table import TextTable
 
 FILTER = N_("Meshes and tables (*.stl *.ply *.obj *.zip *.csv *.tsv *.txt)")
-HEADINGS = (N_("Material"), N_("Particles"), N_("Distance in floors"), N_("g in 100 g of the mixture"))
+HEADINGS = (N_("Material"), N_("Particles"), N_("In floors"), N_("g in 100 g"))
 
 
 class MatchPanel(QWidget):
@@ -102,7 +102,7 @@ class MatchPanel(QWidget):
         for problem in found.problems:
             self._context.toast.problem(problem.with_path)
         values = tuple(_in_floors(part) for part in (match.nearest, match.mixture))
-        note = tr("Energy distance in floors; 1 is that of samples of the target itself.")
+        note = tr("Distances in floors; 1 is the scatter of the sample itself.")
         return ResultRecord(values, match.nearest.name, note=note)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -142,7 +142,7 @@ class MatchPanel(QWidget):
         upper = side_by_side([lists, self.table], [260, 340], stretch=1)
         results = stacked([upper, self.picture], [160, 160], stretch=1)
         layout.addWidget(results, 1)
-        layout.addWidget(control_row(buttons[3]))
+        self.card.add(buttons[3])
         self.add([])
 
     def _ask_folder(self) -> None:
