@@ -52,8 +52,8 @@ from regolith_studio.studies.uncertainty import (
 
 KIND = "uncertainty"
 """Of the list of files, and stem of them."""
-ROWS_A_TASK = 24
-"""Rows of the design that one task evaluates: their grains are made once."""
+ROWS_A_TASK = 8
+"""Rows of the design that one task evaluates: their grains are made once, and a stop loses no more."""
 TOE_FACTOR = 4 / 3
 """On the minimum height of the lower cut, by which the evaluation itself judges what the cut does."""
 OTHER_ENGINES = ("rapier", "mujoco", "box3d")
