@@ -142,7 +142,7 @@ class Newcomer:
                 box = dialog.findChild(QDialogButtonBox)
                 self.press(next(each for each in box.buttons() if each.isDefault()))
             unit = next((each for each in self._dialogs() if isinstance(each, UnitDialog)), None)
-            if unit is not None:
+            if unit is not None and unit.can_open:
                 timer.stop()
                 QTest.keyClick(unit, Qt.Key.Key_Return)
                 self.done()

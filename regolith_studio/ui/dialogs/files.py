@@ -142,6 +142,11 @@ class UnitDialog(GrowingDialog):
         self.size_note.setText(tr("Reading particles"))
         self._open.setEnabled(False)  # else a unit could be taken before the size is known that corrects it
 
+    @property
+    def can_open(self) -> bool:
+        """Whether the size is known, or a unit was chosen."""
+        return self._open.isEnabled()
+
     def _take_unit(self) -> None:
         self._touched = True
         self._open.setEnabled(True)
