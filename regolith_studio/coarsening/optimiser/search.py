@@ -53,10 +53,11 @@ TIE_BREAK_PRICE = 1e-2
 """Price of the overlap where it has none: shapes that only meet descriptors drift away from the particle."""
 FREE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 60, 30, 120
 """On the overlap alone, on the whole loss, after half-spaces became cuts, and of the best at the end."""
-CONTINUATIONS, SHORTER, NEARLY_MET = 3, (0.1, 2e-3, 2e-3, 2e-3, 2e-3), 1e-3
-"""Descents that have not met all by then go on so often, with a new metric: most are still on the way. Those
-that miss no more than the last go on with first moves shorter by these factors: vertices of the box are so
-close."""
+CONTINUATIONS = 3
+"""Descents that have not met all by then go on so often, with a new metric: most are still on the way."""
+SHORTER, NEARLY_MET = (0.1, 2e-3, 2e-3, 2e-3, 2e-3), 1e-2
+"""Those that miss no more than the last go on with another metric, and with first moves shorter by these
+factors: vertices of the box may be closer than longer ones."""
 GROWTH_STEPS = 25
 """After each stage of cuts on the way from few half-spaces to many."""
 ROUND_STARTS = ("round", "round", "grouped")
@@ -364,10 +365,13 @@ class Search:
             self._free_distance = min(self._free_distance, distance)
             start = HalfSpaces(planes[0], planes[1])
         found = self._descended(start, STEPS, FIRST_RADIUS, held=held)
-        for share in (*[1.0] * CONTINUATIONS, *SHORTER):
-            if found is None or found.met or (share < 1.0 and found.worst > NEARLY_MET):
+        share = 1.0
+        for tried in range(CONTINUATIONS + len(SHORTER)):
+            if found is None or found.met or (tried >= CONTINUATIONS and found.worst > NEARLY_MET):
                 break
-            found = self._descended(found.half_spaces, STEPS, share * FURTHER_RADIUS, held=held) or found
+            share, nearly = (1.0, *SHORTER)[max(0, tried - CONTINUATIONS + 1)], found.worst <= NEARLY_MET
+            radius = share * FURTHER_RADIUS
+            found = self._descended(found.half_spaces, STEPS, radius, held=held, steady=nearly) or found
         return self._settled(found, held)
 
     def _grown(self, few: Candidate) -> Candidate | None:
