@@ -55,7 +55,7 @@ FREE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 60, 30, 120
 """On the overlap alone, on the whole loss, after half-spaces became cuts, and of the best at the end."""
 CONTINUATIONS = 3
 """Descents that have not met all by then go on so often, with a new metric: most are still on the way."""
-SHORTER, NEARLY_MET = (0.1, 2e-3, 2e-3, 2e-3, 2e-3), 1e-2
+SHORTER, NEARLY_MET = (1.0, 1.0, 0.1, 2e-3, 2e-3, 2e-3, 2e-3), 1e-2
 """Those that miss no more than the last go on with another metric, and with first moves shorter by these
 factors: vertices of the box may be closer than longer ones."""
 GROWTH_STEPS = 25
@@ -369,7 +369,7 @@ class Search:
         for tried in range(CONTINUATIONS + len(SHORTER)):
             if found is None or found.met or (tried >= CONTINUATIONS and found.worst > NEARLY_MET):
                 break
-            share, nearly = (1.0, *SHORTER)[max(0, tried - CONTINUATIONS + 1)], found.worst <= NEARLY_MET
+            share, nearly = (1.0, *SHORTER)[max(0, tried - CONTINUATIONS + 1)], tried >= CONTINUATIONS
             radius = share * FURTHER_RADIUS
             found = self._descended(found.half_spaces, STEPS, radius, held=held, steady=nearly) or found
         return self._settled(found, held)
