@@ -105,7 +105,7 @@ _MODULES = {
     "read_mesh": "readers.particles",
     "read_particles": "readers.particles",
     "read_volume": "readers.volumes.read",
-    "reconstruct": "harmonics.surface",
+    "reconstruct": "harmonics.synthesis",
     "result_of": "jobs.events",
     "sample_particles": "readers.particles",
     "show": "web.notebook",

@@ -2976,6 +2976,14 @@
         <translation>Weggelassen</translation>
     </message>
     <message>
+        <source>Left out 1 file that holds no image of the series: {names}.</source>
+        <translation>Nicht gelesen: 1 Datei ohne Bild der Serie: {names}.</translation>
+    </message>
+    <message>
+        <source>Left out 1 image whose name does not fit: {names}.</source>
+        <translation>Nicht gelesen: 1 Bild, dessen Name nicht passt: {names}.</translation>
+    </message>
+    <message>
         <source>Left out {count} files that hold no image of the series: {names}.</source>
         <translation>Nicht gelesen: {count} Dateien ohne Bild der Serie: {names}.</translation>
     </message>

@@ -109,7 +109,7 @@ def test_that_images_which_are_no_slices_are_named(tmp_path):
     folder = write(tmp_path / "scan", [*(f"s_{k:x}.tif" for k in range(24)), "preview.tif"])
     assert order(folder) == list(range(1, 25))
     assert [str(note) for note in describe_volume(folder).notes] == [
-        "Left out 1 images whose names do not fit: preview.tif."
+        "Left out 1 image whose name does not fit: preview.tif."
     ]
 
 

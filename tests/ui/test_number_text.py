@@ -108,7 +108,7 @@ def test_that_the_table_of_descriptors_shows_every_number_whole(width, shown, wa
     panel.resize(width, 300)
     wait(lambda: panel.width() == width)
     solid = SimpleNamespace(achieved=values)
-    panel.show_results(SimpleNamespace(particle_descriptors=values, fit_descriptors=values, coarsened=solid))
+    panel.show_results(SimpleNamespace(particle_descriptors=values, fit_descriptors=values, best=solid))
     wait(lambda: panel.table.viewport().width() < width)
     assert cut_texts(panel.table) == []
     assert panel.table.item(0, 2).text().startswith("1.0")

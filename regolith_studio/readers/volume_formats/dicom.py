@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, count_message
 from regolith_studio.readers.error_messages import display_name, printable
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
@@ -387,8 +387,14 @@ def _left_out(others: _Others, chosen: str) -> tuple[str, ...]:
         return ()
     names = [printable(name)[:30] for name in others]
     shown = ", ".join(names[:3]) + (", …" if len(names) > 3 else "")
-    template = N_("Left out {count} files that hold no image of the series: {names}.")
-    return (Message(template, count=len(names), names=shown),)
+    return (
+        count_message(
+            N_("Left out 1 file that holds no image of the series: {names}."),
+            N_("Left out {count} files that hold no image of the series: {names}."),
+            len(names),
+            names=shown,
+        ),
+    )
 
 
 def _header(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, count_message
 from regolith_studio.readers.error_messages import display_name, printable
 from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.volume_formats import VolumeFormat
@@ -127,9 +127,15 @@ def _notes(folder: Path, series: list[SliceSeries], chosen: SliceSeries, wanted:
         if entry.suffix.lower() in SLICE_SUFFIXES and entry.name not in slices and entry.name[0] != "."
     )
     if others:
-        template = N_("Left out {count} images whose names do not fit: {names}.")
         shown = ", ".join(printable(name)[:30] for name in others[:3]) + (", …" if len(others) > 3 else "")
-        notes.append(Message(template, count=len(others), names=shown))
+        notes.append(
+            count_message(
+                N_("Left out 1 image whose name does not fit: {names}."),
+                N_("Left out {count} images whose names do not fit: {names}."),
+                len(others),
+                names=shown,
+            )
+        )
     return tuple(notes)
 
 

@@ -471,9 +471,6 @@ class TextTable(QTableView):
                 self.selectRow(row)
         self.viewport().update()
 
-    def text(self, row: int, column: int) -> str:
-        return self.rows.item(row, column).text()
-
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self.resizeColumnsToContents()  # the style sheet's font is known only now

@@ -24,7 +24,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait, workers)
     page.studies.start()
     wait(lambda: panel.table.rows.rowCount() == 2)
     wait(lambda: panel.card.record.state is ResultState.CURRENT)
-    assert [panel.table.text(row, 0) for row in (0, 1)] == ["0.2", "0.8"]
+    assert [panel.table.rows.item(row, 0).text() for row in (0, 1)] == ["0.2", "0.8"]
     folder = page._folder / "studies" / f"static_friction-{dataset.name}"
     assert (folder / "repose_study.csv").exists()
     assert not page.busy()
