@@ -129,6 +129,7 @@ def test_that_the_page_on_python_goes_from_a_scan_to_friction(
     names["rs"] = regolith_studio
     (here / "heap").rename(here / "first_heap")
     code = heaps.replace(">>> ", "").replace("... ", "").replace(", workers=4", "")
+    code = "\n".join(line for line in code.splitlines() if "drum" not in line)  # the engine makes cones
     exec(compile(code, "python.md", "exec"), names)
     study = names["study"]
     assert study.values == (0.2, 0.4, 0.8)

@@ -1,6 +1,7 @@
 """Every command of the guide runs, page by page, on small files under the names of the page."""
 
 import shutil
+import zipfile
 from pathlib import Path
 
 import h5py
@@ -82,6 +83,20 @@ def write_scans(folder: Path) -> None:
         file["exported_data"] = balls()
 
 
+def write_materials() -> None:
+    """Archives of meshes in two fractions, and tables of length, width and thickness."""
+    for name in ("JSC-1A", "NU-LHT", "soil"):
+        with zipfile.ZipFile(f"{name}.zip", "w") as archive:
+            for mesh in sorted(Path("crowd").glob("*.stl")):
+                for fraction in ("75m", "75-300"):
+                    archive.write(mesh, f"{fraction}/{mesh.name}")
+    rng = np.random.default_rng(0)
+    for name, size in (("75m", 50.0), ("75-300", 150.0)):
+        rows = -np.sort(-size * rng.uniform(0.5, 1.0, (30, 3)), axis=1)
+        lines = ("{:.2f},{:.2f},{:.2f}".format(*row) for row in rows)
+        Path(f"{name}.csv").write_text("\n".join(["Length (um),Width (um),Thickness (um)", *lines]) + "\n")
+
+
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The files that the pages speak of."""
@@ -93,6 +108,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     coefficients = fit_harmonics(read_mesh(first, unit="um").mesh, l_max=4).coefficients
     Path("grain.anm").write_text(table(coefficients.values))
     write_scans(tmp_path)
+    write_materials()
     return tmp_path
 
 
