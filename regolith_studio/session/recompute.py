@@ -261,8 +261,8 @@ class LiveResults:
         from regolith_studio.coarsening.loss import loss
 
         choices = self._session.choices
-        if self._last is None:
-            return step
+        if self._last is None or self._last[1].method != choices.method:
+            return step  # another method may not know these weights
         last, made_with = self._last
         alike = made_with.replaced(weights=choices.weights)
         if _key(Kind.COARSENING, alike) != _key(Kind.COARSENING, choices):

@@ -204,9 +204,12 @@ class ResultView(QFrame):
         state = self._record.state
         start = self._texts[0 if state in (ResultState.NONE, ResultState.FAILED) else 1]
         running = state is ResultState.RUNNING
-        self.button.setText((tr("Stopping …") if self._stopping else tr("Stop")) if running else start)
-        # as wide as its widest text so far, so that it is in its place for the next click
-        self.button.setMinimumWidth(max(self.button.minimumWidth(), self.button.sizeHint().width()))
+        stops = tr("Stop"), tr("Stopping …")
+        widest = 0  # of its texts, so that it is in its place for the next click
+        for text in (*self._texts, *stops, stops[self._stopping] if running else start):
+            self.button.setText(text)
+            widest = max(widest, self.button.sizeHint().width())
+        self.button.setMinimumWidth(widest)
         self.button.setEnabled(not self._stopping if running else not self._problem)
         self.button.setToolTip("" if running else self._problem)
 

@@ -148,7 +148,7 @@ def test_that_a_first_start_compiles_as_many_kernels_as_are_announced(tmp_path: 
         "    print(task, c._count_files() - before)\n"
     )
     named = (
-        "import importlib, pkgutil, sys, regolith_studio\n"
+        "import importlib, pathlib, pkgutil, sys, regolith_studio\n"
         "from numba.core.dispatcher import Dispatcher\n"
         "from regolith_studio.geometry.kernels import _KernelCache\n"
         "for each in pkgutil.walk_packages(regolith_studio.__path__, 'regolith_studio.'):\n"
@@ -157,7 +157,8 @@ def test_that_a_first_start_compiles_as_many_kernels_as_are_announced(tmp_path: 
         "for name, module in list(sys.modules.items()):\n"
         "    for value in vars(module).values() if name.startswith('regolith_studio') else ():\n"
         "        if isinstance(value, Dispatcher) and isinstance(value._cache, _KernelCache):\n"
-        "            print(f'{value.py_func.__module__.split(\".\")[-1]}.{value.py_func.__name__}')\n"
+        "            function = value.py_func\n"
+        "            print(f'{pathlib.Path(function.__code__.co_filename).stem}.{function.__name__}')\n"
     )
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
     told = subprocess.check_output([sys.executable, "-c", count], env=environment, text=True)

@@ -221,6 +221,21 @@ def test_that_the_last_result_stays_where_other_weights_begin_with_a_worse_polyh
     assert best[1].loss == 9.0, "a polyhedron with other facets says nothing"
 
 
+def test_that_a_step_of_a_method_that_keeps_terms_follows_a_result_of_one_that_cannot(
+    session: Session, held: Held
+) -> None:
+    last = session.results.coarsened
+    assert last is not None
+    weights = LossWeights.of(volume=1.0, max_diameter=1.0).keeping(["volume"])
+    session.choose(method="exact", weights=weights)
+    held.waiting["coarsening"][-1].listener(
+        Partial(CoarseningProgress(0, 1, 9.0, last.polyhedron, last.centre))
+    )
+    assert session.results.best is not None
+    assert session.results.best.loss == 9.0
+    held.all()
+
+
 def test_that_another_particle_has_no_curve_of_the_last(session: Session, held: Held) -> None:
     session.adopt([Particle("pea", icosphere(2).moved(scale=3.0))], add=True)
     held.all()

@@ -125,9 +125,9 @@ class Newcomer:
         buttons = self.window.menus.bar.findChildren(QToolButton)
         self.press(next(each for each in buttons if each.isVisible() and each.text().startswith(words)))
 
-    def answer(self, path, act):
-        """Do what asks for a file, paste its path (``None`` for the suggested one) and accept."""
-        timer, written = QTimer(interval=50), []
+    def answer(self, path, act, asks_unit=False):
+        """Do what asks for a file, paste its path (``None`` for the suggested one) and accept, and a unit."""
+        timer, written, accepted = QTimer(interval=50), [], []
 
         def look():
             dialog = next((each for each in self._dialogs() if isinstance(each, QFileDialog)), None)
@@ -144,13 +144,14 @@ class Newcomer:
             unit = next((each for each in self._dialogs() if isinstance(each, UnitDialog)), None)
             if unit is not None and unit.can_open:
                 timer.stop()
+                accepted.append(unit)
                 QTest.keyClick(unit, Qt.Key.Key_Return)
                 self.done()
 
         timer.timeout.connect(look)
         timer.start()
         act()
-        self.wait(lambda: written and not self._dialogs(), 20.0)
+        self.wait(lambda: written and (accepted or not asks_unit) and not self._dialogs(), 20.0)
         timer.stop()
         timer.timeout.disconnect(look)
 
@@ -263,7 +264,7 @@ def test_that_a_hundred_virtual_particles_are_compared_with_the_sample(newcomer)
 def test_that_a_folder_of_one_s_own_becomes_a_polyhedron_with_its_errors(newcomer, tmp_path):
     (tmp_path / "ball.stl").write_bytes(stl_bytes(icosphere(3).moved(scale=40.0).triangles, "ball"))
     window = newcomer.window
-    newcomer.answer(tmp_path, lambda: newcomer.command("open_folder"))
+    newcomer.answer(tmp_path, lambda: newcomer.command("open_folder"), asks_unit=True)
     newcomer.rest()
     assert [entry.id for entry in window.session.particles] == ["ball"]
     found = window.session.results.coarsened
