@@ -418,16 +418,16 @@ _ROWS = (
     ),
 )
 
-CATALOGUE: dict[str, Descriptor] = {row.key: row for row in _ROWS}
+CATALOGUE: dict[str, Descriptor] = {each.key: each for each in _ROWS}
 """Every descriptor by its key, in the order of tables."""
 
-LOSS_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if row.in_loss)
+LOSS_KEYS: tuple[str, ...] = tuple(each.key for each in _ROWS if each.in_loss)
 """The paper's set D of Eq. 8 and 9: V, S, D_min, D_max, AR, CH."""
 
 CHORD_KEYS = ("width", "thickness", "width_over_length", "thickness_over_width")
 """Costly descriptors by chords, beside the length, which is the largest Feret diameter."""
 
-DEFAULT_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if not row.costly)
+DEFAULT_KEYS: tuple[str, ...] = tuple(each.key for each in _ROWS if not each.costly)
 """What :func:`describe` works out unless told."""
 
 

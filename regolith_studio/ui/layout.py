@@ -155,6 +155,8 @@ def dialog_buttons(dialog: QDialog, *accepting: QDialogButtonBox.StandardButton)
     kinds = QDialogButtonBox.StandardButton
     for kind in (*accepting, kinds.Cancel) if accepting else (kinds.Close,):
         box.addButton(kind)
+    if accepting:  # else Return is Cancel's, which gets the focus while what accepts is disabled
+        box.button(kinds.Cancel).setAutoDefault(False)
     box.accepted.connect(dialog.accept)
     box.rejected.connect(dialog.reject)
     return box

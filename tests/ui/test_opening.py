@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QDialogButtonBox, QWidget
 
 from regolith_studio.geometry.particle import Particle
@@ -36,6 +37,8 @@ def test_that_the_unit_that_makes_a_grain_is_suggested_with_its_size(shown, leng
     assert dialog.can_open
     size = {"m": "50.0", "mm": "120", "um": "80.0"}[unit]
     assert dialog.size_note.text().startswith(f"apollo_sample1 would be {size}")
+    QTest.keyClick(dialog, Qt.Key.Key_Return)
+    assert dialog.result() == UnitDialog.DialogCode.Accepted
 
 
 def test_that_a_dialog_grows_with_its_texts_instead_of_squeezing_its_fields(shown, wait):

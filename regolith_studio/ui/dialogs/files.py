@@ -141,6 +141,7 @@ class UnitDialog(GrowingDialog):
         self.setValue(suggestion)
         self.size_note.setText(tr("Reading particles"))
         self._open.setEnabled(False)  # else a unit could be taken before the size is known that corrects it
+        self._open.setDefault(True)
 
     @property
     def can_open(self) -> bool:
