@@ -39,7 +39,8 @@ def test_that_more_effort_never_leads_to_less_overlap(roughness: float) -> None:
         fast, best = (coarsen(target, 20, "exact", settings={"level": level}) for level in ("fast", "best"))
         assert best.reason is None or fast.reason is not None
         if fast.reason is None:
-            assert best.jaccard_distance <= fast.jaccard_distance + 1e-4
+            # the search tells its candidates apart by 2,000 rays, the result is measured with 16,000
+            assert best.jaccard_distance <= fast.jaccard_distance + 3e-4
 
 
 def test_that_the_methods_announce_themselves() -> None:
