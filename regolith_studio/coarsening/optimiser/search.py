@@ -96,8 +96,6 @@ SPREAD = 1.03
 BOX_EVERY = 3
 """Of starts beyond those of the effort every third has the sides of the box, for particles that nearly fill
 it."""
-CONFIRMED = 4
-"""At most so many candidates are measured by the public descriptors."""
 SAME_LOSS = 1e-6
 WORD_LENGTH = 2.0**-40
 """Wanted values are rounded to this share, far above the rounding of how they were measured."""
@@ -525,12 +523,15 @@ class Search:
     def _confirmed(self) -> tuple[ConvexPolyhedron, Descriptors]:
         """The best of which the public descriptors say that all is kept, else that which misses least."""
         checked: list[tuple[float, ConvexPolyhedron, Descriptors]] = []
-        for candidate in sorted(self._found, key=self._rank)[:CONFIRMED]:
+        for candidate in sorted(self._found, key=self._rank):
             solid = ConvexPolyhedron.from_half_spaces(candidate.half_spaces)
             achieved = describe(solid)
             missed = missed_terms(self._target.descriptors, achieved, self._keep)
-            checked.append((max(missed.values(), default=0.0), solid, achieved))
-            if not missed or candidate.worst > EXACT:
+            worst = max(missed.values(), default=0.0)
+            checked.append((worst, solid, achieved))
+            if (
+                worst <= 1.01 * candidate.worst + EXACT
+            ):  # else a smaller box lies where the search did not look
                 break
         return min(checked, key=lambda each: each[0])[1:]
 
