@@ -303,7 +303,7 @@ _BESIDE = 8
 """Pixels of the frame and beside the box of partners."""
 
 _DEFAULT_PIXELS = 12
-"""Height of the letters for which scale bars have their usual size."""
+"""Height of the font for which scale bars have their usual size."""
 
 
 class ViewFrame(QFrame):
@@ -424,6 +424,6 @@ class ViewFrame(QFrame):
 
 
 def keep_views_high(page: QWidget) -> None:
-    """Keep a third of the window for each view: in low windows, and with large letters, the page scrolls."""
+    """Keep a third of the window for each view: in low windows, and with a large font, the page scrolls."""
     for frame in page.findChildren(ViewFrame):
         frame.setMinimumHeight(page.window().height() // 3)

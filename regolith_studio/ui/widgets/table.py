@@ -314,7 +314,20 @@ MEASURED = 100
 """Number of visible rows whose contents determine the width of columns."""
 
 
-class ParticleTable(QTableView):
+class _FittedTable(QTableView):
+    """A table whose columns are as wide as their contents in the font that it is shown in."""
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.resizeColumnsToContents()  # the style sheet's font is known only now
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self.resizeColumnsToContents()
+
+
+class ParticleTable(_FittedTable):
     """The particles, sorted by a click on a header; emits which rows are selected and which one is current.
 
     Groups are listed where there are two, weights where one differs from 1. Columns are as wide as their
@@ -367,15 +380,6 @@ class ParticleTable(QTableView):
                     self.setColumnHidden(number, not shown[column.key])
         self.resizeColumnsToContents()
 
-    def showEvent(self, event: QShowEvent) -> None:
-        super().showEvent(event)
-        self.resizeColumnsToContents()  # the style sheet's font is known only now
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange:
-            self.resizeColumnsToContents()
-
     def set_filter(self, keeps: Filter | None) -> None:
         """List only the particles for which this is true."""
         with self._kept_selection():
@@ -417,7 +421,7 @@ class ParticleTable(QTableView):
             self.currentChosen.emit(self.particles.rows[index.row()].id)
 
 
-class TextTable(QTableView):
+class TextTable(_FittedTable):
     """Rows of texts; ``chosen`` carries the number of the row that the user has selected.
 
     ``name``, ``spoken``: object name and accessible name. ``headings``: of the columns; texts are aligned
@@ -470,15 +474,6 @@ class TextTable(QTableView):
             else:
                 self.selectRow(row)
         self.viewport().update()
-
-    def showEvent(self, event: QShowEvent) -> None:
-        super().showEvent(event)
-        self.resizeColumnsToContents()  # the style sheet's font is known only now
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange:
-            self.resizeColumnsToContents()
 
     def _announce(self) -> None:
         if (row := self.selected()) is not None:

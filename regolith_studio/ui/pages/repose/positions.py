@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -26,9 +25,9 @@ from regolith_studio.readers.positions import ParticlePositions, asks_for_column
 from regolith_studio.readers.settings import unit_factor
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
-from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, vbox
+from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, named, vbox
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.fields import DecimalField
+from regolith_studio.ui.widgets.fields import choice, decimal_field
 from regolith_studio.ui.widgets.labels import hint_label, short_number
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -52,28 +51,19 @@ class PositionsDialog(GrowingDialog):
         self.setObjectName("positions_dialog")
         self.setWindowTitle(tr("Positions in {name}", name=path.name))
         self._width = 0.0 if read is None else float(np.ptp(read.points, axis=0).max(initial=0.0))
-        self.columns, self.unit = QLineEdit("x y z radius", self), QComboBox(self)
-        self.diameter = DecimalField(self)
-        for key in UNITS:
-            self.unit.addItem(tr(LABELS[key]), key)
-        self.diameter.setRange(1e-6, 1e6)
-        self.diameter.setDecimals(4)
-        self.diameter.setValue(1.0)
+        spoken = tr("All columns in their order"), tr("Length unit"), tr("Particle diameter [mm]")
+        self.columns = named(QLineEdit("x y z radius"), "positions_columns", spoken[0])
+        self.unit = choice("positions_unit", spoken[1], {key: LABELS[key] for key in UNITS})
+        self.diameter = decimal_field("positions_diameter", spoken[2], 1e-6, 1e6, 1.0, decimals=4)
         self.size_note = hint_label()
         form = QFormLayout()
         rows = (
-            (read is None, tr("All columns in their order"), "positions_columns", self.columns),
-            (read is None or not read.states_unit, tr("Length unit"), "positions_unit", self.unit),
-            (
-                read is None or read.diameters is None,
-                tr("Particle diameter [mm]"),
-                "positions_diameter",
-                self.diameter,
-            ),
+            (read is None, self.columns),
+            (read is None or not read.states_unit, self.unit),
+            (read is None or read.diameters is None, self.diameter),
         )
-        for needed, label, name, field in rows:
-            field.setObjectName(name)
-            field.setAccessibleName(label)
+        for label, (needed, field) in zip(spoken, rows, strict=True):
+            field.setParent(self)
             field.setVisible(needed)
             if needed:
                 form.addRow(label, field)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QPixmap, QResizeEvent
-from PySide6.QtWidgets import QFileDialog, QLabel, QListWidget, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QLabel, QListWidget, QPushButton, QWidget
 
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.matching_jobs import DrawnMatch, MatchRequest, draw_match
@@ -14,7 +14,7 @@ from regolith_studio.readers.settings import UNITS
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.studies.matching import MatchedPart
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.layout import control_row, side_by_side, stacked
+from regolith_studio.ui.layout import control_row, named, side_by_side, stacked, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.result_card import ResultRecord, ResultView, RunController
 from regolith_studio.ui.translation import number_text, tr
@@ -37,16 +37,11 @@ class MatchPanel(QWidget):
         self.card = ResultView(
             "match_card", (tr("Nearest"), tr("Mixture")), start=tr("Match"), again=tr("Match again"), lines=2
         )
-        self.candidates = QListWidget()
-        self.candidates.setObjectName("match_candidates")
-        self.candidates.setAccessibleName(tr("Materials that are compared with the sample"))
-        self.cards = ElidedComboBox()
-        self.cards.setObjectName("match_cards")
-        self.cards.setAccessibleName(tr("Add a material card"))
-        self.unit = ElidedComboBox()
-        self.unit.setObjectName("match_unit")
-        self.unit.setAccessibleName(tr("Length unit of files without one"))
-        self.unit.setToolTip(tr("Length unit of files without one"))
+        spoken = tr("Materials that are compared with the sample")
+        self.candidates = named(QListWidget(), "match_candidates", spoken)
+        self.cards = named(ElidedComboBox(), "match_cards", tr("Add a material card"))
+        spoken = tr("Length unit of files without one")
+        self.unit = named(ElidedComboBox(), "match_unit", spoken, spoken)
         self.table = TextTable("match_table", tr("Distances and masses"), [tr(each) for each in HEADINGS])
         self.picture = QLabel(alignment=Qt.AlignmentFlag.AlignCenter)
         self.picture.setMinimumSize(QSize(120, 60))
@@ -127,21 +122,14 @@ class MatchPanel(QWidget):
             ("match_remove", tr("Remove"), self._remove),
             ("match_save", tr("Save …"), self.save),
         ):
-            buttons.append(QPushButton(text))
-            buttons[-1].setObjectName(name)
+            buttons.append(named(QPushButton(text), name))
             buttons[-1].clicked.connect(act)
         lists = QWidget()
-        column = QVBoxLayout(lists)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.candidates, 1)
-        column.addWidget(control_row(self.cards, self.unit))
-        column.addWidget(control_row(*buttons[:3]))
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(4, 4, 4, 4)
-        layout.addWidget(self.card)
+        rows = control_row(self.cards, self.unit), control_row(*buttons[:3])
+        vbox((self.candidates, 1), *rows, parent=lists)
         upper = side_by_side([lists, self.table], [260, 340], stretch=1)
         results = stacked([upper, self.picture], [160, 160], stretch=1)
-        layout.addWidget(results, 1)
+        vbox(self.card, (results, 1), parent=self, margins=(4, 4, 4, 4))
         self.card.add(buttons[3])
         self.add([])
 
