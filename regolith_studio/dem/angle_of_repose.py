@@ -306,6 +306,7 @@ def _cut_shift(
     angle = np.mean(_flanks(sections))
     shifts = [0.0]
     for factor in (2 / 3, 4 / 3):
+        # Within the limits of the settings.
         toe, bottom = min(settings.toe * factor, 10.0), min(settings.cut_bottom * factor, 0.45)
         try:
             fitted, _ = _sections(surfaces, mean_diameter, replace(settings, toe=toe, cut_bottom=bottom))
@@ -326,6 +327,7 @@ def rough_tilt(sections: Sequence[Section]) -> float:
         for line, side in ((fit.left, u < fit.break_point), (fit.right, u >= fit.break_point)):
             run = u[side & section.used]
             scatter = np.std(z[side & section.used] - line.slope * run)
+            # d arctan(s) = ds / (1 + s^2).
             tilts.append(ROUGH_SHARE * scatter / np.ptp(run) / (1.0 + line.slope**2))
     return float(np.degrees(np.mean(tilts)))
 
@@ -400,4 +402,6 @@ def standard_interval(flanks: Sequence[float], confidence: float) -> float:
     """
     independent = min(len(flanks), 360.0 / NEIGHBOURHOOD)
     quantile = float(student_t.ppf((1.0 + confidence) / 2, independent - 1))
+    # The deviation over n flanks (ddof 0) over sqrt(m - 1) is the standard error of the mean of m independent
+    # ones.
     return quantile * float(np.std(flanks) / np.sqrt(independent - 1))

@@ -6,6 +6,8 @@ from regolith_studio.dem.case import PreparedCase, bond_number
 from regolith_studio.dem.engine import MASS
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
+# Not wider: across 0.01 d grains that did not touch, and so had no friction, pulled each other into flatter
+# heaps, of 16 degrees instead of 25 for 400 polyhedra.
 RANGE = 0.004
 """Gap in mean diameters across which particles attract: Box3D keeps the points of a contact within it."""
 

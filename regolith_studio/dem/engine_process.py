@@ -98,6 +98,7 @@ def _followed(
                     raise EngineError(_exit_message(engine.label, child.wait(), last))
     finally:
         _end(child)
+        # In this order: the thread reads until the child's output ends.
         reader.join()
         if child.stdout is not None:
             child.stdout.close()
@@ -151,6 +152,7 @@ def _exit_message(label: str, code: int, last: str) -> str:
 def main() -> None:
     """Read the task and run it."""
     source, target = private_pipes()
+    # Where there are no sessions, on Windows, Ctrl+C reaches the child too, which its parent ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     key, prepared, settings, folder = pickle.load(source)
     end_with_parent(source)
@@ -174,6 +176,7 @@ def run_task(target: BinaryIO, key: str, prepared: PreparedCase, settings: Any, 
                 save_engine_state(folder, engine_state_bytes(snapshot.state(), run, number + 1))
                 saved = time.monotonic()
                 interval = max(STATE_INTERVAL, 20.0 * (saved - began))
+            # A state is a function of this process, which pickle cannot send.
             _send(target, replace(snapshot, state=None))
     except RegolithError as error:
         _send(target, str(error))

@@ -42,11 +42,13 @@ def loose_column(prepared: PreparedCase) -> ParticleState:
     turns = Rotation.random(len(prepared), random_state=_generator(prepared, 1))
     matrices, radius = turns.as_matrix(), prepared.case.test.diameter / 2
     cell = CELL * prepared.mean_diameter
+    # The border of a footprint reaches two cells beyond the particle, and its centre is rounded to one.
     middle = int(np.ceil((radius + enclosing_radii(prepared).max()) / cell)) + 3
     surface = np.zeros((2 * middle + 1, 2 * middle + 1))
     planes = _facet_planes(prepared)
     places = np.empty((len(prepared), 3))
     for k, (kind, matrix) in enumerate(zip(prepared.class_index, matrices, strict=True)):
+        # Otherwise all centres would lie on the grid of the height map.
         shift = generator.uniform(-0.5, 0.5, 2)
         if planes:
             footprint = _footprint(

@@ -321,6 +321,7 @@ def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, N
     """Go on from a state that a snapshot offered."""
     for name in RECORDS:
         setattr(run, name, state.records[name])
+    # A list in JSON, which would not equal NOT_FILLED.
     run.fill = (run.fill[0], run.fill[1])
     run.times = {float(step): time for step, time in state.records["times"].items()}
     run.solver.phase = run.phase
@@ -411,6 +412,7 @@ def is_calm(run: LiftingRun) -> bool:
 
 def _is_clear(run: LiftingRun) -> bool:
     """Whether the rim is above everything."""
+    # A whole diameter, since polyhedra reach farther than their equivalent radius.
     reach = run.prepared.diameters / run.units.length
     return bool(run.solver.rim > (run.solver.points[:, 2] + reach).max() + CLEAR)
 
@@ -426,6 +428,7 @@ def _snapshot(run: LiftingRun) -> Snapshot:
 def engine_state(run: LiftingRun) -> EngineState:
     """All that :func:`resume_lifting` needs to go on from here."""
     records = {name: getattr(run, name) for name in RECORDS} | {"times": run.times}
+    # A copy as a file gives it back: the run goes on and changes its own records.
     return EngineState(json.loads(json.dumps(records)), run.solver.state())
 
 

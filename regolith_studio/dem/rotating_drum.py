@@ -103,6 +103,7 @@ def _in_drum(run: LiftingRun, state: ParticleState) -> ParticleState:
 def _checks(run: LiftingRun) -> RunChecks:
     points, test = run.solver.points, run.prepared.case.test
     radius, depth = test.diameter / 2 / run.units.length, test.height / run.units.length
+    # Depth within the drum takes the place of the height above the plate: what left the drum counts as lost.
     inside = np.min(
         [radius - np.hypot(points[:, 0], points[:, 1]), points[:, 2], depth - points[:, 2]], axis=0
     )
@@ -111,6 +112,7 @@ def _checks(run: LiftingRun) -> RunChecks:
         run.solver.overlaps(),
         energy_gain=run.energy_gain,
         kinetic_energy=mean_energies(run)[1],
+        # A turning bed never rests: what has to have come to rest is its filling.
         at_rest=run.fill != NOT_FILLED,
         filling=run.fill,
         lowest=inside,

@@ -128,6 +128,7 @@ class _Forms:
     @property
     def bytes_per_pair(self) -> int:
         v, f, e = (each.shape[1] for each in (self.vertices, self.normals, self.edges))
+        # The matrices of `_edge_distances` and `_distances`, and the vectors of the edges.
         return int(8 * (6 * e * e + 4 * v * f + 12 * e))
 
     def placed(self, bodies: IntArray, scales: FloatArray, turns: FloatArray) -> "_Forms":

@@ -91,6 +91,7 @@ def components_of_slab(
         return np.zeros(mask.shape, np.int32, order="F"), SlabComponents(
             none[:, 0], none, none, none[:, 0] > 0
         )
+    # As arrays: three slices in Python for each component would be far more memory than its numbers.
     seen = _statistics(numbers, no_slice_conversion=True)
     boxes = np.asarray(seen["bounding_boxes"], dtype=np.int64)[1:]
     shift = np.array([0, 0, first])
@@ -132,6 +133,8 @@ class ComponentJoiner:
         links = np.concatenate(self._links)
         shape = (self._count + 1, self._count + 1)
         graph = sparse.coo_array((np.ones(len(links), dtype=np.int8), tuple(links.T)), shape=shape)
+        # scipy counts components by their lowest node: 0, what is no component, stays 0, and bodies keep
+        # their order.
         n_bodies, component_of = csgraph.connected_components(graph, directed=False)
         body_of: IntArray = component_of.astype(np.int64)
         sizes = np.zeros(n_bodies, dtype=np.int64)

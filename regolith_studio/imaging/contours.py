@@ -42,6 +42,8 @@ def body_contour(share: NDArray[np.float32]) -> Mesh:
     """Contour at one half of the largest body, without what it encloses."""
     body, _ = largest_component(np.ascontiguousarray(share >= 0.5))
     body = pores_filled(body)
+    # Filled pores and other bodies go to the other side of the level; not onto it, where marching cubes would
+    # put several corners of a triangle into one place.
     one = np.where(body, np.maximum(share, 0.501), np.minimum(share, 0.499))
     mesh = contour(np.pad(one, 1).astype(np.float32), 0.5, (1.0, 1.0, 1.0))
     return mesh.moved(shift=np.full(3, -1.0))
@@ -142,6 +144,7 @@ def with_volume(mesh: Mesh, volume: float) -> Mesh:
 def _series(iterations: int, pass_band: float) -> FloatArray:
     """Chebyshev coefficients, shape (iterations + 1,)."""
     order = np.arange(1, iterations + 1)
+    # The series is in M = 1 - L / 2 with the frequencies, 0 to 2, of the umbrella Laplacian L.
     angle = np.arccos(1.0 - pass_band / 2.0)
     window = 0.54 + 0.46 * np.cos(np.pi * order / (iterations + 1))
     series = np.concatenate([[angle / np.pi], 2.0 * window * np.sin(order * angle) / (order * np.pi)])

@@ -46,6 +46,7 @@ CLOSED_GAP = 2.16
 """Width in voxels of the gap beside the point where two balls touch that blur closes at most. A wider contact
 is that of two pieces; the mean of balls in packings with a blur of 0.8 voxels is 1.4."""
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
+# Clipped values hide where half of the contrast is: volumes came out 10 to 17 % too large.
 _MAX_CLIPPED = 0.05
 """Share of a grain's voxels at the end of the range of grey values from which on it is said."""
 _BATCH_SHARE = 8
@@ -221,6 +222,8 @@ def select_labels(
     table = label_table(volume, run)
     boxes, sizes = table.boxes(), table.sizes()
     strays: dict[int, tuple[int, int]] = {}
+    # Before anything is known by boxes: two stray voxels in the corners of a scan gave one grain a border
+    # weight of 84,480 instead of 3.9.
     pieces = in_batches(run, partial(_largest_piece, SharedArray(volume.array)), boxes.items(), _size_of_row)
     for label, (box, size, n_pieces) in zip(tuple(boxes), pieces, strict=True):
         if n_pieces > 1:
@@ -323,6 +326,7 @@ def _shares_inside(box: Box, shape: tuple[int, int, int]) -> FloatArray:
     """Along each axis, the share of the places of a box where it keeps clear of both borders."""
     lengths = np.array([side.stop - side.start for side in box], dtype=np.float64)
     size = np.array(shape, dtype=np.float64)
+    # At least one place: a grain as long as the scan would have an infinite weight.
     return np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)
 
 
@@ -469,10 +473,13 @@ def _thickness(body: BoolArray) -> float:
     """Shortest axis, in voxels, of the ellipsoid with the second moments of a body."""
     covariance = np.zeros((3, 3))
     for one, other in ((0, 1), (0, 2), (1, 2)):
+        # The second moments of a body are those of its projections, which need no list of voxels.
         plane = body.sum(axis=3 - one - other).astype(np.float64)
         weights = plane / plane.sum()
         at = np.meshgrid(*(np.arange(n, dtype=np.float64) for n in plane.shape), indexing="ij")
         off = [axis - float((weights * axis).sum()) for axis in at]
         covariance[one, other] = covariance[other, one] = (weights * off[0] * off[1]).sum()
         covariance[one, one], covariance[other, other] = ((weights * each**2).sum() for each in off)
+    # An ellipsoid has the variance a^2 / 5 along its half axis a: 2 a = sqrt(20 variance). A voxel's own
+    # width adds 1/12, so that a plate of one voxel is not without thickness.
     return float(np.sqrt(20.0 * (max(float(np.linalg.eigvalsh(covariance)[0]), 0.0) + 1.0 / 12.0)))

@@ -37,6 +37,8 @@ def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tup
     low, high = _errors(name, scan.across, scan.noise)[1:, : len(KEYS)]
     if not np.isfinite(low).all():
         return {}
+    # Errors are relative to the truth, measured = (1 + error) truth: the largest error belongs to the lowest
+    # value.
     return {key: (measured[key] / (1 + high[k]), measured[key] / (1 + low[k])) for k, key in enumerate(KEYS)}
 
 
@@ -63,6 +65,9 @@ def mean_errors(
     for (name, i, j), weight in weights.items():
         _, low, high = _table(name)[2][i, j].T / 100.0
         n = _n_grains(name)
+        # Cells hold prediction intervals, mean +- t s sqrt(1 + 1/n), solved here for s. The variance of
+        # Student's t with n - 1 degrees of freedom, (n - 1) / (n - 3), is that of a mean whose s is an
+        # estimate, too.
         deviation = 0.5 * (high - low) / (stdtrit(n - 1, 0.95) * np.sqrt(1 + 1 / n))
         variance += (weight / sum(weights.values()) * deviation) ** 2 * (n - 1) / (n - 3) / n
     return np.array(errors), np.sqrt(variance)
@@ -86,6 +91,7 @@ def follows_grey(across: float, noise: float) -> bool:
         sum(np.abs(_errors(f"{shape}, {surface}", across, noise)[1:, area]).max() for shape in SHAPES)
         for surface in ("grey", "mask")
     )
+    # Not `grey <= mask`: where the table has no numbers both are NaN, and the grey values are followed.
     return bool(not grey > mask)
 
 

@@ -38,7 +38,7 @@ from regolith_studio.imaging.surface_refinement import (
 
 MARGIN = 7
 """Voxels around the box of a grain that are used."""
-_CRUMB_DISTANCE, _CRUMB_VOXELS = 2.5, 8
+_DEBRIS_DISTANCE, _DEBRIS_VOXELS = 2.5, 8
 """Bright voxels so far from the grain, and so many together, belong to something else."""
 _MAX_VOLUME_RATIO = 2.0
 """Maximum ratio of the volumes by brightness and by voxel count."""
@@ -130,11 +130,12 @@ def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> t
     rim, reliable = share.copy(), (inside <= RIM) & (outside <= RIM)
     rim[inside > RIM] = 1.0
     body = inside > 0.0
-    strange = (share >= 0.5) & (outside > _CRUMB_DISTANCE)
-    others = others | np.asarray(_without_small_components(strange.view(np.uint8), _CRUMB_VOXELS) > 0)
+    strange = (share >= 0.5) & (outside > _DEBRIS_DISTANCE)
+    others = others | np.asarray(_without_small_components(strange.view(np.uint8), _DEBRIS_VOXELS) > 0)
     if others.any():
         away = depth(~others)
         touched = body & (away <= CONTACT)
+        # Half for each of two grains that are equally near, so that no brightness counts twice or not at all.
         rim[~body & (away == outside)] *= 0.5
         rim[~body & (away < outside)] = 0.0
         if touched.any():
@@ -152,6 +153,7 @@ def _blur(rim: Floats, noise: float, mesh: Mesh, cubic_voxels: bool) -> FloatArr
     """
     uncertain = (rim != 0.0) & (rim != 1.0)
     share = rim[uncertain].astype(np.float64)
+    # Noise lowers the expected u (1 - u) by its variance.
     spread = np.sqrt(np.pi) * (share * (1.0 - share) + noise**2)
     blur = np.full(3, np.clip(spread.sum() / mesh.surface_area, *_BLURS))
     if cubic_voxels:

@@ -97,6 +97,7 @@ def _write_tiff(
     sizes = {name: value for axis, edge in edges for name, value in (
         (f"PhysicalSize{axis}", edge), (f"PhysicalSize{axis}Unit", "µm"),
     )}  # fmt: skip
+    # tifffile's own identifier holds the time, so that equal volumes would differ.
     ome = tifffile.OmeXml(UUID=str(uuid.uuid5(uuid.NAMESPACE_OID, f"{labels.name} {labels.shape}")))
     ome.addimage(stored, (nz, ny, nx), (nz, 1, 1, ny, nx, 1), axes="ZYX", Name=DATASETS[labels.kind], **sizes)
     options: dict[str, Any] = {"description": ome.tostring(declaration=True).encode()}
@@ -112,6 +113,7 @@ def _write_tiff(
                     metadata=None,
                     **options,
                 )
+                # The XML of OME-TIFF stands in the first page alone.
                 options = {}
             yield
 

@@ -39,6 +39,7 @@ def label_surface(labels: NDArray[Any], voxel_size: FloatArray, max_edge: int = 
     coarse = np.pad(np.maximum(labels[::step, ::step, ::step], 0), 1)  # also makes a single slice a volume
     present, compact = np.unique(coarse, return_inverse=True)
     spacing = np.asarray(voxel_size, float) * step
+    # The padding puts the first sample half a voxel before the corner of the volume.
     image: Any = pyvista.ImageData(dimensions=coarse.shape, spacing=spacing, origin=-spacing / 2)
     image.point_data["labels"] = compact.reshape(coarse.shape).astype(np.int32).ravel(order="F")
     contour: Any = image.contour_labels(
@@ -50,6 +51,7 @@ def label_surface(labels: NDArray[Any], voxel_size: FloatArray, max_edge: int = 
     )
     if not contour.n_cells:
         return LabelSurface(np.zeros((0, 3)), np.zeros((0, 3), np.int64), np.zeros(0, np.int64))
+    # External faces have the background, 0, on one side.
     sides = np.asarray(contour.cell_data["boundary_labels"]).reshape(contour.n_cells, -1)
     return LabelSurface(
         np.asarray(contour.points, dtype=np.float64),

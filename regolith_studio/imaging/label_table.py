@@ -120,6 +120,7 @@ def find_padding(source: Volume, run: ParallelMap = map) -> tuple[set[int], Bool
 
 def _padding_in_slab(labels: SharedArray, part: tuple[int, int]) -> tuple[set[int], IntArray]:
     first, stop = part
+    # One slice more, for the faces between this slab and the next.
     slab = labels.slices(first, stop + 1)
     counts = (slab[:, :, : stop - first] < 0).sum(axis=2)
     beside: set[int] = set()
@@ -179,6 +180,7 @@ def _unsigned(slab: NDArray[Any]) -> NDArray[Any]:
         return slab.view(np.uint8)
     if slab.dtype.kind == "u":
         return slab
+    # cc3d refuses labels below 0, which mark what lies outside.
     return np.asarray(np.maximum(slab, 0), dtype=np.uint32)
 
 
@@ -218,9 +220,12 @@ class ScanCircle:
 
         ``footprint``: pixels that have a voxel of the grain, shape (bx, by).
         """
+        # Half a pixel of the grain and half of the free one beside it: b pixels then need b + 1, as in
+        # border_weight.
         points = _corners(footprint, 1.0) - (np.array(footprint.shape) - 1.0) / 2.0
         extent = (points @ self.normals.T).max(axis=0)
         clear = (self.places @ self.normals.T <= self.offsets - extent).all(axis=1)
+        # No finer than the places tell: a grain that fits nowhere would have an infinite weight.
         return max(float(clear.mean()), 1.0 / len(self.places))
 
 

@@ -100,12 +100,15 @@ def grain_shares(
       widest one ends.
     """
     far = np.minimum(outside, depth(~others)) if others.any() else outside
+    # Between packed grains hardly a voxel is farther than the rim from all of them.
     beyond = far > (RIM if np.count_nonzero(far > RIM) >= _MIN_VOXELS else CONTACT)
     if np.count_nonzero(beyond) < _MIN_VOXELS:
         return "too little background lies about it"
     background = values[beyond]
+    # Plates and needles have no voxel at the usual depth: their deepest ones count.
     shell = (inside > min(_FIRST_SHELL[0], float(inside.max()) - 0.5)) & (inside <= _FIRST_SHELL[1])
     lift = float(np.median(values[shell]) - np.median(background))
+    # 1.4826: standard deviation of a Gaussian in median absolute deviations, which debris hardly changes.
     noise = 1.4826 * float(np.median(np.abs(background - np.median(background))))
     if not noise < _MAX_NOISE * abs(lift):
         return "it is hardly brighter or darker than its surroundings"
@@ -113,6 +116,7 @@ def grain_shares(
     level = _local_mean(above, shell)
     if (level[shell] < _MIN_CONTRAST * abs(lift)).any():
         return "it is in part hardly brighter or darker than its surroundings"
+    # Only the shell was checked; elsewhere a level near 0 would make shares without limit.
     level = np.maximum(level, np.float32(_MIN_CONTRAST * abs(lift)))
     grain, full = _Grain(above, noise, others, inside, outside, cubic_voxels), inside > RIM
     core = np.zeros_like(level)
@@ -157,6 +161,7 @@ def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Fl
         known &= from_pore > _HOLLOW_REACH
     away = depth(~grain.others) if grain.others.any() else None
     if away is not None:
+        # `away` is cut off at MAX_DEPTH, from where on it cannot be compared with depths.
         known &= (away > depths + CONTACT) | (away >= MAX_DEPTH)
     outer = (smooth < 0.5) & (grain.outside <= RIM) & (grain.inside <= RIM) & ~hollow
     noise = grain.noise / float(np.median(level[body]))
@@ -187,6 +192,8 @@ def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floa
     deviation of the edge, in voxels.
     """
     above, noise = grain.above, grain.noise
+    # Without any blur the shell would begin in the voxels that the surface cuts: balls of 13 voxels were 6 %
+    # too small.
     wide = max(blur, _MIN_WIDTH)
     early, usual = (wide * each for each in _BEGIN)
     steps = [early, usual, *(usual + _THICKNESS * (k + 1) for k in range(_LAYERS))]
@@ -194,6 +201,7 @@ def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floa
     if not len(indices):
         return None
     deep = depths.ravel()[indices]
+    # At this depth the blur has taken 1 - ndtr of the contrast of a plane edge.
     full = np.asarray(above.ravel()[indices] / (ndtr(deep / blur) if grain.cubic else 1.0), np.float32)
     typical = float(np.median(full))
     layers = []
@@ -202,6 +210,8 @@ def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floa
         layers.append(_local(above.shape, indices[chosen], full[chosen], noise, typical))
     level, thin, weight = _joined(layers, noise, _TOLERANCE * typical)
     added = np.zeros(above.shape, np.float32)
+    # The blurred edge of a core just below the rim brightens the outer layer: balls of 20 voxels with a core
+    # of twice the brightness lost 9.8 % of their volume before both edges were fitted together.
     if (differs := thin & (layers[1][1] > _MIN_WEIGHT)).any():
         rim, added, fitted = _rim_and_core(above, depths, blur, differs)
         level = np.where(fitted, rim, level)
@@ -230,6 +240,7 @@ def _rim_and_core(
     def mean(products: Floats) -> Floats:
         return _mean(blocks, block, np.asarray(products, np.float32))[0]
 
+    # Normal equations of value = one * rim + other * core, block by block.
     rim = ndtr(deep / blur)
     rim2, rim_value, value2 = mean(rim * rim), mean(rim * values), mean(values * values)
     best = np.full(blocks, np.inf, np.float32)

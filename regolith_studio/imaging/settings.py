@@ -262,6 +262,8 @@ class ExtractionSettings:
     warn_diameter: float = 12.0
     fill_pores: bool = True
     iterations: int = setting(20, "Iterations of the smoothing", minimum=0)
+    # 0.1 takes 2.5 % off the area of a contour of polyhedra of 7 to 9 facets (24 voxels), 0.13 takes 1.7 %;
+    # balls have 1.5 % too much. The refinement of the surface begins there.
     pass_band: float = setting(0.13, "Pass band of the smoothing", minimum=1e-9, maximum=2.0)
     surface: Surface = setting(
         "grey",

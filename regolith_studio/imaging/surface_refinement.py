@@ -75,6 +75,7 @@ def refined_to_scan(
     - ``blur``: standard deviations along the axes of the blur as an edge shows it, in voxels, the voxel's
       own width in it, shape (3,).
     """
+    # The coverage of voxels blurs by their width already.
     point_spread = np.sqrt(np.maximum(blur**2 - _BOX, 0.0))
 
     def missing(mesh: Mesh) -> Floats:
@@ -100,6 +101,8 @@ def _moved(
     mesh: Mesh, missing: Callable[[Mesh], Floats], blur: float, reach: float, how: RefinementSettings
 ) -> Mesh:
     """The mesh after all steps and the twicing; `blur` and `reach` set the length of the steps."""
+    # A plane edge blurred by a Gaussian of sigma has the slope 1 / (sqrt(2 pi) sigma) at the surface: a
+    # difference in brightness times sqrt(2 pi) sigma is the distance by which the surface is off.
     pace = _RELAXATION * float(np.sqrt(2.0 * np.pi * (blur**2 + reach**2)))
     smooth = LowPass(mesh.faces, len(mesh.vertices), how.iterations)
     for _ in range(how.steps):

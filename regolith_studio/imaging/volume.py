@@ -95,6 +95,7 @@ class Volume:
         object.__setattr__(self, "voxel_size", sizes)
 
     def __reduce__(self) -> tuple[Callable[..., "Volume"], tuple[Any, ...]]:
+        # By the constructor, since pickle forgets that an array is read-only.
         return Volume, (self.array, self.voxel_size, self.kind, self.name, self.origin)
 
     @property

@@ -111,6 +111,7 @@ def thick_slabs(source: SliceSource, ranges: list[tuple[int, int]], margin: int)
             parts.append(source.read(end, high))
         values = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
         begin, end = max(stop - margin, 0), high
+        # A view would hold the whole slab in memory.
         kept = values[:, :, begin - low :].copy(order="F") if end > begin else None
         yield ThickSlab(first, stop, values, slice(first - low, stop - low))
 
@@ -120,10 +121,8 @@ class ScratchArrays:
 
     The folder vanishes when the scratch is closed, is forgotten, or the program ends.
 
-    ``folder``: where the temporary folder is made; ``None`` keeps everything in memory.
-
-    ``folder``: the temporary folder, if there is one. ``checkpoint``: keeps the slabs of a probability map
-    as they are finished, if somebody has opened one.
+    ``folder``: where the temporary folder is made, and after that this folder itself; ``None`` for arrays in
+    memory. ``checkpoint``: holds the finished slabs of a probability map, if there is one.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -132,6 +131,7 @@ class ScratchArrays:
         self.checkpoint: Checkpoint | None = None
         self._clear = None
         if folder is not None:
+            # Workers map the files by these paths, whatever folder they run in.
             self.folder = Path(tempfile.mkdtemp(dir=folder, prefix="regolith-")).absolute()
             self._clear = weakref.finalize(self, _removed, self.folder)
 

@@ -85,6 +85,7 @@ def surface_profile(discs: Discs, mean_diameter: float, settings: EvaluationSett
     places: FloatArray = (start + width * np.arange(n_lines)).astype(np.float64)
     raw = connected_tops(discs, places, width, settings.gap * mean_diameter)
     height = np.asarray(median_filter(raw, size=settings.median_window, mode="constant", cval=0.0))
+    # A heap narrower than half of the window has a median of 0 everywhere.
     if not height.any():
         height = raw
     first, last = _heap(height)
@@ -122,6 +123,7 @@ def _crossings(discs: Discs, places: FloatArray, width: float) -> tuple[IntArray
 
 def _highest_before(line: IntArray, top: FloatArray) -> FloatArray:
     """Highest top among the earlier entries of the same line, at least 0; `line` is sorted."""
+    # Each line is lifted above all lines before it, so that one running maximum begins anew with each.
     lift = (top.max(initial=0.0) + 1.0) * line
     running = np.maximum.accumulate(np.maximum(top + lift, lift))
     before = np.concatenate([[0.0], running[:-1]])

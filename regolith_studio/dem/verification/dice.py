@@ -121,8 +121,10 @@ def _solid_fraction(run: LiftingRun) -> float:
     """Share of quasi-random points inside that lie in a die."""
     particles, d = particles_of(run), run.prepared.mean_diameter
     top = float(np.quantile(particles.points[:, 2], 0.95)) / d
+    # Walls order the dice next to them, which the experiment did not count.
     radius, low, high = ACROSS / 2 - MARGIN, MARGIN, top - MARGIN
     places = Sobol(3, scramble=False).random(N_POINTS)
+    # The square root spreads the points evenly over the disc.
     across, angle = radius * np.sqrt(places[:, 0]), 2 * np.pi * places[:, 1]
     height = low + (high - low) * places[:, 2]
     points = d * np.column_stack([across * np.cos(angle), across * np.sin(angle), height])

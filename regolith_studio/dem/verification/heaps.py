@@ -158,6 +158,7 @@ def gravities(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     pairs = []
     engine = runs.engine
     usual = engine.Settings()
+    # Settings are in sqrt(d/g), which is longer on the Moon.
     shorter = replace(usual, time_step=usual.time_step * (MOON / EARTH) ** 0.5)
     for seed in SEEDS:
         angles = []

@@ -168,6 +168,7 @@ def _place(solver: Solver, places: FloatArray, turns: Rotation, gravity: FloatAr
 
 def _run(solver: Solver, duration: float) -> None:
     end = solver.time + duration
+    # Steps add up to the duration with rounding, after which a further step would count.
     while solver.time < end - 1e-9:
         step = solver.time_step()
         solver.advance(step, max(1, round(0.5 / step)))

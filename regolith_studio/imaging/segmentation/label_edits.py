@@ -22,7 +22,7 @@ from regolith_studio.imaging.volume import Box, Volume, box_between
 
 EditKind = Literal["merge", "delete", "seeds", "cut", "fill", "paint", "erase"]
 EDIT_KINDS: tuple[EditKind, ...] = get_args(EditKind)
-_LEAST_POINTS: dict[EditKind, int] = {"merge": 2, "seeds": 2, "cut": 2}
+_MIN_POINTS: dict[EditKind, int] = {"merge": 2, "seeds": 2, "cut": 2}
 _IN_SLICES, _BRUSHED = ("cut", "fill"), ("paint", "erase")
 MAX_RADIUS = 100.0
 Voxel = tuple[int, int, int]
@@ -55,7 +55,7 @@ class LabelEdit:
     def __post_init__(self) -> None:
         if self.kind not in EDIT_KINDS:
             raise InputError(f"An edit of labels is one of {', '.join(EDIT_KINDS)}, not {self.kind!r}.")
-        least = _LEAST_POINTS.get(self.kind, 1)
+        least = _MIN_POINTS.get(self.kind, 1)
         if len(set(self.points)) < least or (self.kind == "cut" and len(self.points) != 2):
             raise InputError(f"The edit {self.kind!r} of labels needs {least} different voxels.")
         if self.axis not in (0, 1, 2):

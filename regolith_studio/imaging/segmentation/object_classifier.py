@@ -145,6 +145,7 @@ def object_features(crop: GrainCrop, edges: FloatArray) -> FloatArray:
     grey = grey[np.isfinite(grey)] if np.isfinite(grey).any() else np.zeros(1)
     places = np.stack(np.nonzero(own), axis=-1) * edges
     moments = np.cov(places.T, bias=True) if len(places) > 1 else np.zeros((3, 3))
+    # A voxel's own second moment keeps flat objects of one voxel from a thickness of 0.
     short, middle, long = np.sqrt(np.linalg.eigvalsh(moments + np.diag(edges**2) / 12))
     return np.array(
         [
@@ -168,6 +169,7 @@ def _contact_share(crop: GrainCrop, edges: FloatArray) -> float:
     for axis in range(3):
         face = float(np.prod(edges) / edges[axis])
         for step in (-1, 1):
+            # np.roll wraps around, into the padding only.
             beyond = own & ~np.roll(own, step, axis)
             meeting = float(np.count_nonzero(beyond & np.roll(others, step, axis)))
             touched += face * meeting
@@ -208,6 +210,7 @@ def train_on_examples(
 
 def _centre_and_spread(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Median and half the range of the middle 68 % of each descriptor; 1 where all objects are alike."""
+    # One standard deviation on either side, of a Gaussian; artefacts among the objects hardly change it.
     low, centre, high = np.quantile(vectors, (0.16, 0.5, 0.84), axis=0)
     spread = (high - low) / 2
     spread[spread <= 1e-9 * np.maximum(np.abs(centre), 1.0)] = 1.0
@@ -222,16 +225,10 @@ SUSPICIOUS = 2.0
 class SuspectObject:
     """An object unlike the others.
 
-    Parameters
-    ----------
-    label, box, n_voxels
-        Where it is, and its size.
-    solidity
-        Volume over that of the convex hull.
-    deviation
-        Distance from the median in spreads: of its solidity below it, or of its size on either side.
-    by_size
-        Whether its size is what is unusual.
+    - ``solidity``: volume over that of the convex hull.
+    - ``deviation``: distance from the median in spreads: of its solidity below it, or of its size on either
+      side.
+    - ``by_size``: whether its size is what is unusual.
     """
 
     label: int

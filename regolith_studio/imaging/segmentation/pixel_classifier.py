@@ -74,6 +74,8 @@ class ClassifierSettings:
     features: FeatureSettings = field(default_factory=FeatureSettings)
     kind: ClassifierKind = "network"
     hidden: int = 32
+    # Measured: with second derivatives and this, ten strokes on the second shipped scan have an IoU of .953,
+    # before .941; the derivatives alone gain less.
     regularisation: float = 10.0
     seed: int = 0
 

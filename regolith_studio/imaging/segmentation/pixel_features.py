@@ -203,6 +203,7 @@ def _eigenvalues(derivatives: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
     spread = np.sqrt((a**2 + b**2 + c**2 + 2.0 * (xy**2 + xz**2 + yz**2)) / 6.0)
     determinant = a * (b * c - yz**2) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
     cube = np.maximum(2.0 * spread**3, np.float32(np.finfo(np.float32).tiny))
+    # Rounding takes the quotient beyond 1 where two eigenvalues are one.
     angle = np.arccos(np.clip(determinant / cube, -1.0, 1.0)) / 3.0
     first = mean + 2.0 * spread * np.cos(angle)
     last = mean + 2.0 * spread * np.cos(angle + np.float32(2.0 * np.pi / 3.0))

@@ -266,6 +266,7 @@ def _correct(
         sorting = sort_objects(numbers, objects, edges, settings.objects, settings.splitting, least)
         yield from _staged(N_("Classifying objects"), sorting)
     yield from _staged(N_("Correcting labels"), apply_edits(numbers, settings.edits, edges))
+    # Again: grains may have been painted beyond the circle.
     _mark_outside(numbers, grey, outside)
     counts = np.zeros(int(numbers.max()) + 1, dtype=np.int64)
     for first, stop in slab_ranges(SharedArray(numbers).shape):
@@ -386,6 +387,7 @@ def _found_bodies(
     level = level_of(seen, settings.threshold, values.dtype)
     numbers = SharedArray(scratch.zeros(source.shape, np.int32))
     bodies = yield from _numbered(smooth, level, settings, numbers, scratch, run, padding)
+    # By identity: without filling, classifier or denoising some of the three are one array.
     for array in {id(each): each for each in (smooth.array, values.array, filled.array)}.values():
         if array is not source.array:
             scratch.drop(array)
@@ -452,6 +454,7 @@ def _shared_table(values: IntArray, scratch: ScratchArrays) -> SharedArray:
 
 def _relabel_slab(numbers: SharedArray, table: SharedArray, part: tuple[int, int], shift: int = 0) -> None:
     """Replace each -k in a slab by entry k + `shift` of a table; what is not negative stays."""
+    # What is not negative was replaced by the same task in a worker that ended before it answered.
     slab = numbers.slices(*part)
     entries = np.asarray(table.array)[:, 0, 0]
     numbers.write(part[0], np.where(slab < 0, entries[np.where(slab < 0, shift - slab, 0)], slab))
@@ -535,6 +538,7 @@ def _number_slab(
         :, :, slab.inner
     ]
     if padding is not None:
+        # After the cleaning, whose closing may bridge a gap into what lies outside.
         mask &= ~padding.of(part)
     core = mask & grain_voxels(slab.values[:, :, slab.inner], level, how) if how.low else None
     slab_components, components = components_of_slab(mask, slab.first, core)

@@ -69,6 +69,7 @@ def find_basins(heights: NDArray[np.float32], step_lengths: FloatArray) -> "Wate
     padded = np.pad(heights, 1)
     flat = padded.reshape(-1)
     wet = np.flatnonzero(flat > 0.0)
+    # Stable, so that plateaus are flooded in the order of their voxels on every machine.
     order = wet[np.argsort(-flat[wet], kind="stable")]
     strides = np.array([padded.shape[1] * padded.shape[2], padded.shape[2], 1])
     offsets = np.ascontiguousarray(_STEPS @ strides)
@@ -96,6 +97,8 @@ def _flooded(
     basins: NDArray[np.int32],
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Fills `basins` (flat, padded by one); returns peak voxels, pairs that meet, their ridges."""
+    # Arrays grow here and not in the kernel: one that returns arrays runs Python's code to make them, where
+    # Ctrl+C would end the interpreter.
     size, counts, taken = 1024, np.zeros(2, np.int64), 0
     founders, parents = np.empty(size, np.int64), np.empty(size, np.int32)
     meetings, ridges = np.empty((size, 2), np.int64), np.empty((size, 2))

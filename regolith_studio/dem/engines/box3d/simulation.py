@@ -88,6 +88,7 @@ class Box3dSolver:
         plate = self._body(lib.b3_kinematicBody if drum else lib.b3_staticBody, np.zeros(3), IDENTITY)
         self.ends = [plate]
         if drum:
+            # Above the column until `turn_walls` closes the drum with it.
             self.ends.append(self._body(lib.b3_kinematicBody, np.array([0.0, 0.0, 2.0 * self.top]), IDENTITY))
         self.plates = []
         for body, side in zip(self.ends, (-1, 1), strict=False):
@@ -171,6 +172,7 @@ class Box3dSolver:
         test, friction = self.prepared.case.test, friction_in(self.phase, self.prepared, self.settings)
         for shape in self.shapes:
             lib.b3Shape_SetFriction(shape, friction)
+        # sqrt(f_wall^2 / f * f) = f_wall, whatever the particles have in this phase.
         if friction > 0.0:
             for shape in self.walls:
                 lib.b3Shape_SetFriction(shape, test.wall_friction**2 / friction)

@@ -123,6 +123,7 @@ def clump_shape(parts: Sequence[FloatArray], count: int, max_error: float = 0.0)
 
 
 def _solid(vertices: FloatArray) -> ConvexPolyhedron:
+    # Qhull gives a facet of k corners as k - 2 triangles with equations that differ in the last bits.
     planes = np.unique(np.round(ConvexHull(vertices).equations, 10), axis=0)
     return ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
 
@@ -278,6 +279,8 @@ def script(
         f"variable up equal {plan.raised!r}+(step-v_begin)*{plan.step!r}*{plan.speed!r}\n"
         f"{tube} move NULL NULL v_up\n{hold}\nrun {lift}\nunfix tube\n"
     )
+    # The box grows along x and y (boundary s): a rounded clump without rolling resistance rolls on at
+    # constant speed and would leave a fixed one.
     return f"""units lj
 atom_style hybrid sphere bond
 boundary s s f
@@ -333,6 +336,7 @@ def viscosity(young: float, poisson: float, bounce: float) -> float:
     Tsuji's damping is alpha(e) sqrt(m k) with k = 4/3 E* a, the viscoelastic one is this coefficient times
     a m, where a is the radius of the contact and m the reduced mass.
     """
+    # LAMMPS' own polynomial for Tsuji's alpha(e).
     alpha = float(np.polyval([4.8218, -18.022, 27.467, -22.348, 11.087, -4.2783, 1.2728], bounce))
     effective = young / (2 * (1 - poisson**2))
     radius, mass = np.sqrt(0.25 * TYPICAL_OVERLAP), np.pi / 12

@@ -25,6 +25,8 @@ from regolith_studio.messages import N_, Message
 WALL_THICKNESS = 2.0
 PARTICLE, WALL, PLATE = 1, 2, 4
 """Bits of contact: particles meet all, walls and plate only particles."""
+# MuJoCo's solimp: impedance at no overlap and at an overlap of the width, 0.05 d; midpoint and power of the
+# curve.
 CONTACT_SOFTNESS = (0.95, 0.99, 0.05, 0.5, 2.0)
 ARENA, ARENA_PER_PARTICLE = 64 << 20, 128 << 10
 """Bytes for contacts and solver: ten times what a run was seen to use, touched only as far as it is used.
@@ -67,17 +69,20 @@ def _set_options(spec: mujoco.MjSpec, settings: MujocoSettings) -> None:
     option = spec.option
     option.timestep = settings.time_step
     option.gravity = [0.0, 0.0, -1.0]
+    # Coulomb's cone: the friction of the pyramid depends on the direction.
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.solver = mujoco.mjtSolver.mjSOL_CG
     option.iterations = settings.iterations
     option.tolerance = settings.tolerance
     option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
     option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    # A diverged run would begin again from its first state without a word.
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     spec.stat.extent = 10.0
 
 
 def _contact(prepared: PreparedCase, settings: MujocoSettings, friction: float) -> dict[str, object]:
+    # MuJoCo's coefficients of rolling and spinning are lengths: the fraction times the radius, half of d.
     rolling = prepared.case.contact.rolling_friction / 2
     return {
         "friction": [friction, max(rolling, 1e-6), max(rolling, 1e-6)],
@@ -281,6 +286,8 @@ class MujocoSolver:
         if len(values) != mujoco.mj_stateSize(self.model, STATE) + 3:
             raise RegolithError("The state of MuJoCo to go on from is that of other particles.")
         mujoco.mj_setState(self.model, self.data, values[:-3], STATE)
+        # Speed of walls and friction belong to the model, energies to the last step: none is in MuJoCo's
+        # state.
         self.model.geom_surfacevel[self.walls, 2] = values[-3]
         self.data.energy[:] = values[-2:]
         self._set_friction()

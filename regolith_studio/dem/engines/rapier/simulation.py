@@ -246,6 +246,7 @@ def _form(
         sharp = rapier.SharedShape.convex_hull(prepared.shapes[kind] * size)
         return rounded[0], sharp.compute_mass_properties(1.0)
     moments, axes = np.linalg.eigh(prepared.inertias[kind] * size**5)
+    # eigh may return a reflection, which is no rotation.
     frame = Rotation.from_matrix(axes * np.linalg.det(axes)).as_quat().tolist()
     union = rapier.MassProperties((0.0, 0.0, 0.0), size**3, moments.tolist(), frame)
     return rapier.SharedShape.compound([(IN_PLACE, each) for each in rounded]), union
@@ -273,6 +274,7 @@ def inner_parallel_body(vertices: FloatArray, distance: float) -> FloatArray:
 
     Raises InputError if nothing is left of it.
     """
+    # Qhull gives a facet of k corners as k - 2 triangles with equations that differ in the last bits.
     planes = np.unique(np.round(ConvexHull(vertices).equations, 9), axis=0)
     planes[:, 3] += distance
     centre, left = inscribed_ball(planes[:, :3], -planes[:, 3])
