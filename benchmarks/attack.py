@@ -32,7 +32,6 @@ import math
 import multiprocessing
 import os
 import random
-import re
 import shutil
 import signal
 import subprocess
@@ -53,7 +52,7 @@ from unittest.mock import patch
 import numpy as np
 
 from benchmarks import attack_inputs
-from benchmarks.attack_inputs import write_inputs
+from benchmarks.attack_inputs import PROGRESS, write_inputs
 from regolith_studio import __main__ as program
 from regolith_studio.cli import entry
 
@@ -62,8 +61,6 @@ DISK_MOMENTS, KILL_MOMENTS = 5, 10
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 NOT_COMPARED = {"times.json", "journal"}
 """Durations differ, and a journal is there to be resumed."""
-PROGRESS = re.compile(r"[\d,]+ of [\d,]+: ")
-"""A line that long batches print every half minute where there is no terminal."""
 PATIENCE = 900.0
 BLOCK = 4096
 """Bytes in which a file system in memory counts."""

@@ -80,7 +80,7 @@ def _heap(rng: np.random.Generator) -> str:
 
 
 PATIENCE = 60.0
-PROGRESS = re.compile(r"[\d,]+ of [\d,]+: ")
+PROGRESS = re.compile(r".*: [\d,]+ of [\d,]+(, |$)")
 """A line of progress that long work prints where there is no terminal."""
 NAMES = (
     *("../../escaped", "/tmp/regolith-escaped", "..", "a\\..\\..\\b", "C:\\x", "CON", "", "n\nl", "x" * 5000),

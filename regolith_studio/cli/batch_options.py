@@ -61,7 +61,7 @@ def chosen_executor(runner: str, jobs: int, address: str, tls: Path | None) -> "
 MOST_IN_MEMORY = 2000
 """Members of an archive that are read into memory together."""
 _MOST_LINES = 20
-"""Problems that are printed; ``failed.csv`` has all."""
+"""Problems that are printed, ``failed.csv`` has all; and notes, ``--json`` has all."""
 
 Resume = Annotated[bool, typer.Option("--resume", help="Resume an interrupted run in the output folder.")]
 
@@ -108,14 +108,22 @@ class BatchOptions:
         recipe = Recipe.from_choices(choices, [entry], outputs)
         with chosen_executor(self.runner, jobs, self.address, self.tls) as executor:
             done = run_with_progress(run_recipe(recipe, Path(), output, executor, self.resume), logged=True)
+        print_notes(done.notes)
         more = len(done.problems) - _MOST_LINES
         print_errors(done.problems[:_MOST_LINES] + ([f"{more:,} more in failed.csv."] if more > 0 else []))
         if json:
             counts = {"particles": done.tally.n_read, "failed": len(done.problems)}
-            print_json({"folder": str(output), **counts, "problems": list(done.problems)})
+            lists = {"problems": done.problems, "notes": done.notes}
+            print_json({"folder": str(output), **counts, **lists})
         else:
             typer.echo(f"{len(done.items.members):,} particles, {len(done.problems):,} problems in {output}")
         raise typer.Exit(1 if done.problems else 0)
+
+
+def print_notes(notes: Sequence[str]) -> None:
+    """The first of many notes, and how many more there are."""
+    more = len(notes) - _MOST_LINES
+    print_errors([*notes[:_MOST_LINES], *([f"{more:,} more notes."] if more > 0 else [])])
 
 
 def check_fits_memory(paths: Sequence[Path]) -> None:

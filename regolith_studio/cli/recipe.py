@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chosen_executor
+from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chosen_executor, print_notes
 from regolith_studio.cli.dataclass_options import option_of
 from regolith_studio.cli.generate import write_particles
 from regolith_studio.cli.offscreen_process import draw_in_process, draw_three_views
@@ -65,9 +65,11 @@ def run(
         done = run_with_progress(
             run_recipe(wish, recipe.parent, output, executor, resume, chunk), logged=True
         )
+    print_notes(done.notes)
     print_errors(done.problems)
     if json:
-        print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
+        lists = {"files": done.files, "problems": done.problems, "notes": done.notes}
+        print_json({"folder": str(output), **lists})
     else:
         typer.echo(f"{len(done.files)} files in {output}")
     raise typer.Exit(1 if done.problems else 0)

@@ -37,15 +37,18 @@ def _with_lines(steps: "Steps", interval: float) -> Any:
     """Print a line of progress, at most one in `interval` seconds."""
     from regolith_studio.jobs import events
 
-    last_line = time.monotonic()
+    last_line, title = time.monotonic(), ""
     while True:
         try:
             step = next(steps)
         except StopIteration as end:
             return end.value
-        if isinstance(step, events.Progress) and time.monotonic() - last_line > interval:
+        if isinstance(step, events.Started):
+            title = step.title
+        elif isinstance(step, events.Progress) and time.monotonic() - last_line > interval:
             last_line = time.monotonic()
-            print_errors([f"{step.done:,} of {step.total:,}{': ' if step.message else ''}{step.message}"])
+            message = f", {step.message}" if step.message else ""
+            print_errors([f"{title}: {step.done:,} of {step.total:,}{message}"])
 
 
 def _with_bar(steps: "Steps") -> Any:

@@ -24,6 +24,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes, write_in_stage
 from regolith_studio.io.checkpoint import CheckpointRecord, read_note
 from regolith_studio.io.file_names import file_stem, unique_name
+from regolith_studio.io.own_files import read_json
 from regolith_studio.jobs.batch import LOST, Batch, run_batch
 from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.dataset_jobs import dataset_provenance
@@ -31,7 +32,8 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, study_coarsening, study_lmax
 from regolith_studio.messages import N_
-from regolith_studio.session.batch.inputs import BatchInputs
+from regolith_studio.readers.particles import left_out
+from regolith_studio.session.batch.inputs import BatchInputs, FileInput
 from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
 from regolith_studio.session.batch.preprocessing import PreparedInputs, clear_prepared_inputs, prepare_inputs
 from regolith_studio.session.batch.writers import (
@@ -58,7 +60,7 @@ from regolith_studio.session.recipe import Recipe, Representatives
 Part = Generator[Step, None, Any]
 CHECKPOINT, PREPARED_FOLDER = "checkpoint.sqlite", "prepared"
 ENDED = "ended"
-"""Note of a run that has ended: the problems that it met."""
+"""Note of a run that has ended: its problems and notes."""
 
 
 @dataclass
@@ -70,6 +72,7 @@ class RecipeRun:
     - ``tally``: sums over all particles.
     - ``summary``: content of the summary page.
     - ``problems``: one sentence for each file or particle that failed.
+    - ``notes``: what the readers of files note: how they were read, and what was left out.
     - ``resume``: whether studies continue from their checkpoints.
     """
 
@@ -81,6 +84,7 @@ class RecipeRun:
     summary: Summary = field(default_factory=Summary)
     studies: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
     resume: bool = False
     stage: Path = field(init=False)
 
@@ -128,11 +132,12 @@ def run_recipe(
             recipe, base, journal / PREPARED_FOLDER, executor, finished=finished and resume
         )
         run = RecipeRun(folder, recipe, choices, BatchInputs.of(recipe, base, prepared), resume=resume)
+        run.notes = _notes_on_files(recipe, base, prepared)
         _check_inputs(run)
         batch = _open_batch(run, resume, chunk)
         with batch.checkpoint:
             if (ended := batch.checkpoint.note(ENDED)) is not None:
-                run.problems = ended
+                run.problems, run.notes = ended
                 return run
             yield from _process_particles(run, batch, executor)
             _count_results(run, batch)
@@ -144,9 +149,18 @@ def run_recipe(
                 if recipe.outputs.summary:
                     write_summary(run.stage, run.recipe, run.summary, run.studies, run.problems)
                 write_bytes(run.stage / "recipe.json", recipe.to_json().encode("utf-8"))
-            batch.checkpoint.remove_records(**{ENDED: run.problems})
+            batch.checkpoint.remove_records(**{ENDED: (run.problems, run.notes)})
             clear_prepared_inputs(prepared)
     return run
+
+
+def _notes_on_files(recipe: Recipe, base: Path, prepared: PreparedInputs) -> list[str]:
+    """What is noted on volumes, and on files in the folders of meshes that are none."""
+    notes = [note for each in recipe.openings for note in left_out([base / name for name in each.files])]
+    for entry, folder in zip(recipe.volumes, prepared.volumes, strict=True):
+        document = read_json(folder / EXTRACTION)
+        notes += [f"{Path(entry.file).name}: {note}" for note in document["notes"]]
+    return notes
 
 
 def _check_inputs(run: RecipeRun) -> None:
@@ -233,6 +247,9 @@ def _write_results(run: RecipeRun, batch: Batch) -> Part:
 def _count_results(run: RecipeRun, batch: Batch) -> None:
     for record in _records(run, batch):
         run.tally.add(record)
+        if isinstance(run.items.members[record.index], FileInput):
+            values = record.values
+            run.notes += [f"{values['name']}: {note}" for note in values.get("notes", ())]
     run.problems += [problem.with_path for problem in run.items.problems]
     run.problems += run.tally.unread + run.tally.problems
     if not run.tally.n_read:

@@ -128,7 +128,7 @@ class BatchRuns(DialogRuns[BatchDialog]):
     def sentence_of(self, result: "RecipeRun") -> str:
         written = tr("Done: {count} files in {folder}.", count=len(result.files), folder=result.folder)
         failed = tr("{count} problems are listed in failed.csv.", count=len(result.problems))
-        return " ".join((written, *((failed,) if result.problems else ())))
+        return " ".join((written, *((failed,) if result.problems else ()), *result.notes[:3]))
 
     def stopped_sentence(self) -> str:
         return tr("Stopped. Finished parts are kept: run again into the same folder to resume.")

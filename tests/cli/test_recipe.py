@@ -3,7 +3,10 @@
 import json
 from pathlib import Path
 
+import h5py
+import numpy as np
 import pytest
+import trimesh
 
 from regolith_studio.cli.entry import run
 from regolith_studio.session.outputs.summary import Summary, summary_page
@@ -28,6 +31,29 @@ def test_that_a_recipe_leaves_everything_it_asks_for(command, grains: Path, tmp_
     page = (tmp_path / "out" / "summary.html").read_text()
     assert "grain-b" in page
     assert "12 facets" in page
+
+
+def test_that_a_recipe_prints_what_readers_note(command, tmp_path: Path) -> None:
+    """Files that were passed by, points that were left out and a choice of volumes were silent."""
+    meshes, size = tmp_path / "meshes", 40.0
+    meshes.mkdir()
+    box = trimesh.creation.box((size, size, 2 * size))
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in [*box.vertices, (9 * size, 0.0, 0.0)])
+    (meshes / "box.obj").write_text(corners + "".join(f"f {a} {b} {c}\n" for a, b, c in box.faces + 1))
+    (meshes / "heap.vtk").write_text("# vtk DataFile Version 3.0\n")
+    with h5py.File(tmp_path / "scan.h5", "w") as file:
+        file["a"] = file["b"] = np.pad(np.ones((16, 16, 16), np.uint8), 4)
+    scan = {"file": str(tmp_path / "scan.h5"), "voxel_size": 1.0, "extraction": {"surface": "mask"}}
+    notes = [
+        "meshes: left out 1 file that no reader of meshes takes: heap.vtk.",
+        "scan.h5: The file holds 2 volumes; a was read.",
+        "box: Left out 1 point that no triangle uses.",
+    ]
+    path = recipe(tmp_path, meshes, unit="um", volumes=[scan], outputs={"meshes": False, "dataset": False})
+    for options in ((), ("--resume",)):
+        result = command("run", path, "-o", tmp_path / "out", "--json", *options)
+        assert result.code == 0
+        assert result.err.splitlines() == result.json["notes"] == notes
 
 
 def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_path: Path) -> None:

@@ -21,4 +21,4 @@ def test_that_a_log_gets_a_line_now_and_then(
     assert terminal.run_with_progress(steps()) == 7
     assert capsys.readouterr().err == ""
     assert terminal.run_with_progress(steps(), logged=True) == 7
-    assert capsys.readouterr().err == "1,500 of 2,000: 5 a second, 1 min 40 s left\n"
+    assert capsys.readouterr().err == "Counting: 1,500 of 2,000, 5 a second, 1 min 40 s left\n"

@@ -50,7 +50,7 @@ by a hundredth of its volume under the weight of all; the time step follows from
 which the smallest particle, pressed by its whole face, would swing. Run it on one thread (yade -j1): YADE's
 law for polyhedra keeps one shear force for all contacts, which several threads would write at once; so
 friction acts while particles slide and has no memory at rest. It costs some 0.1 ms for two particles in
-contact and a step. The engine YADE of "repose run" does the same test and goes on after a crash of YADE."""
+contact and a step."""
 
 COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz")
 

@@ -95,7 +95,7 @@ def _process(index: int, item: BatchInput, task: ParticleTask) -> Generator[Step
     entry = _RecordBuilder(index, {"name": item.name, "group": "", "seconds": {}})
     particle = yield from entry.attempt("reading", Job(call, (_read, item)))
     if particle is not None:
-        entry.values["group"] = particle.group
+        entry.values |= {"group": particle.group, "notes": list(particle.notes)}
         yield from _process_particle(entry, particle, task)
     entry.values["failures"] = entry.failures
     return CheckpointRecord(index, entry.values, entry.blobs)
@@ -142,10 +142,7 @@ def _store_fit(entry: _RecordBuilder, particle: Particle, fit: HarmonicFit) -> N
     (document,) = fits_document([particle.name], [fit])["particles"]
     source = particle.source
     entry.values["fit"] = _finite(document)
-    entry.values["origin"] = {
-        "source": None if source is None else [source.path, source.sha256, source.unit],
-        "notes": list(particle.notes),
-    }
+    entry.values["source"] = None if source is None else [source.path, source.sha256, source.unit]
     entry.blobs[COEFFICIENTS] = _bytes(fit.coefficients.values)
 
 

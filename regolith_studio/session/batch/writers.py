@@ -198,10 +198,9 @@ class _FitWriter:
     def add(self, record: CheckpointRecord) -> None:
         values = record.values
         if entry := values.get("fit"):
-            origin = values["origin"]
-            source = None if origin["source"] is None else Source(*origin["source"])
+            source = None if values["source"] is None else Source(*values["source"])
             self.origins.append(
-                FittedParticleInfo(values["name"], values["group"], source, tuple(origin["notes"]))
+                FittedParticleInfo(values["name"], values["group"], source, tuple(values["notes"]))
             )
             self.fits.append(_fit(entry, record.blobs[COEFFICIENTS]))
         elif reason := reason_of(record, "fitting"):
