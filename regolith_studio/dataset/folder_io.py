@@ -314,10 +314,12 @@ def _files(
     for index, shape in enumerate(shapes()):
         files.append([])
         for part, mesh in enumerate(shape.meshes):
+            # The process that stored the shape knew neither its number nor how many there are.
             header = mesh_header(index, count, part).encode("ascii").ljust(HEADER_SIZE)
             file, content = mesh_path(index, count, part), header + mesh[HEADER_SIZE:]
             files[-1].append({"file": file, "sha256": hashlib.sha256(content).hexdigest()})
             yield file, content
+    # Last, with the hashes of all files; the shapes come a second time, so that one is in memory at a time.
     yield DOCUMENT, _document(_records(shapes(), weights, files), head)
     counted = "particles" if head["weighting"] == "number" else "volume, not particles"
     yield README, README_TEMPLATE.format(name=head["name"], count=count, counted=counted).encode("utf-8")
@@ -338,6 +340,7 @@ def _records(
 
 def _document(records: Iterable[dict[str, Any]], head: dict[str, Any]) -> Iterator[bytes]:
     """``dataset.json`` piece by piece; the rest of the document is checked together with the first record."""
+    # Written about an empty entry, so that the bytes are those of the whole document at once.
     before, after = _strict_json(head | {_PLACE: ""}).split(f'\n  "{_PLACE}": ""')
     yield f'{before}\n  "{_PLACE}": ['.encode()
     size = 0

@@ -97,6 +97,7 @@ def cylinder_filling(
 
 
 def _two_digits_up(value: float) -> float:
+    # 1e-9: what has two digits already must not be rounded up by its last bit.
     step = 10.0 ** (np.floor(np.log10(value)) - 1)
     return float(f"{np.ceil(value / step - 1e-9) * step:.2g}")
 

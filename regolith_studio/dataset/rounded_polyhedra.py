@@ -78,6 +78,7 @@ def edge_bends(shape: ConvexPolyhedron) -> FloatArray:
     normals, vertices = shape.half_spaces.normals, shape.vertices
     bends = []
     for (first, second), (one, other) in _edges(shape).items():
+        # Not arccos of the product, which loses half of the digits of small angles.
         angle = np.arctan2(
             np.linalg.norm(np.cross(normals[one], normals[other])), normals[one] @ normals[other]
         )

@@ -170,6 +170,8 @@ def _layer(spacing: float, within: float | None, count: int) -> FloatArray:
         raise InputError(
             f"A particle of {spacing * 1e3:.3g} mm does not fit into a cylinder of {within * 1e3:.3g} mm."
         )
+    # 1e-9: by rounding, a cylinder of exactly three spacings held one particle a layer and made a tower of 66
+    # cm.
     reach = int(free / spacing + 1e-9)
     steps = np.arange(-reach, reach + 1) * spacing
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)

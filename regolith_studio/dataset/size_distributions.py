@@ -219,6 +219,7 @@ class RosinRammlerSizeDistribution(SizeDistribution):
     def quantile(self, probabilities: ArrayLike) -> FloatArray:
         low, high = self._limits
         share = low + np.asarray(probabilities, dtype=np.float64) * (high - low)
+        # A share of 1 has an infinite logarithm; its diameter is cut off at the maximum anyway.
         values = self.scale_um * (-np.log1p(-np.minimum(share, 1 - 1e-16))) ** (1 / self.shape)
         return np.asarray(np.clip(values, self.min_um, self.max_um))
 
@@ -229,6 +230,7 @@ class RosinRammlerSizeDistribution(SizeDistribution):
         if order <= 0:
             return self.as_classes(4000).moment(power)
         a, b = ((d / self.scale_um) ** self.shape for d in (self.min_um, self.max_um))
+        # In the upper tail both lower functions are nearly 1, and their difference would be rounding.
         between = (
             gammainc(order, b) - gammainc(order, a)
             if a < order
@@ -239,7 +241,6 @@ class RosinRammlerSizeDistribution(SizeDistribution):
     def as_classes(self, count: int = 400) -> SieveSizeDistribution:
         """The same distribution as sieve classes between evenly spaced logarithms of the diameter."""
         openings = np.geomspace(self.min_um, self.max_um, count + 1)
-        openings[[0, -1]] = self.min_um, self.max_um
         return SieveSizeDistribution.of(openings, np.diff(self.cdf(openings)), self.weighting)
 
     def _by_cube(self, power: int, weighting: Weighting) -> SieveSizeDistribution:
@@ -273,6 +274,7 @@ def normalised_shares(amounts: ArrayLike) -> tuple[float, ...]:
     values = np.asarray(amounts, dtype=np.float64)
     if not np.isfinite(values).all() or (values < 0).any() or not values.sum() > 0:
         raise InputError("Weights must not be negative, and at least one must be positive.")
+    # The second division takes out the rounding of the first, which grows with the number of shares.
     shares = values / values.sum()
     return tuple((shares / shares.sum()).tolist())
 
@@ -356,6 +358,7 @@ def _points(sizes: SizeDistribution) -> tuple[FloatArray, FloatArray]:
         return np.array(by_number.diameters_um)[shares > 0], shares[shares > 0]
     edges = np.linspace(0.0, 1.0, QUANTILES + 1)
     middle = (edges[1:] + edges[:-1]) / 2
+    # By volume too: the few large particles that carry the mass lie within the last quantiles by number.
     limits = np.unique(
         np.concatenate([by_number.quantile(middle), sizes.weighted("volume").quantile(middle)])
     )

@@ -247,6 +247,8 @@ class _Comparison:
             for j, second in enumerate(self._parts[i:], start=i):
                 product = weights[i] @ self._distances[np.ix_(first, second)]
                 total = np.einsum("bn,bn->b", product, weights[j])
+                # Without pairs of a particle with itself: their distance of 0 would lower the mean within a part
+                # and so move small parts away from the target.
                 pairs = sums[i] * sums[j] - (squares[i] if i == j else 0.0)
                 mean[:, i, j] = mean[:, j, i] = total / pairs
         to_target, within = mean[:, 0, 1:], mean[:, 0, 0]
@@ -259,6 +261,7 @@ class _Comparison:
         shares = np.full(n, 1 / n)
         floors = []
         for row in rows:
+            # Kish's effective number of particles of a mixture with these shares.
             count = round(1.0 / float((row**2 / np.array(self.counts[1:])).sum()))
             both = [rng.multinomial(m, shares, N_RESAMPLES).astype(float) for m in (n, max(count, 2))]
             x, y = (each * self._weights[own] for each in both)
@@ -309,6 +312,7 @@ def _nearest_shares(form: FloatArray) -> FloatArray:
     """
     values, vectors = np.linalg.eigh(form)
     scale = max(float(np.abs(values).max()), 1e-300)
+    # An unbiased estimate of K may have negative eigenvalues, which have no root.
     root = np.sqrt(np.maximum(values, 1e-12 * scale))[:, None] * vectors.T
     shares, _ = nnls(
         np.vstack([root, np.full(len(form), np.sqrt(scale))]), np.r_[np.zeros(len(form)), np.sqrt(scale)]

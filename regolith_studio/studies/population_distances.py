@@ -190,6 +190,7 @@ class DistributionComparison:
             weights = class_weights(pool, weighting, self._size_column)
             own = np.concatenate([weights[:n], np.zeros(len(self.drawn))])
             for k, column in enumerate(pool.T):
+                # Weight 0 for particles of the other part: a column is sorted once for all partitions.
                 parts = (weights * first, weights * (1.0 - first))
                 distances[:, w, k] = resampled_distances(column, column, *parts, own)
         mean = distances.mean(axis=-1)

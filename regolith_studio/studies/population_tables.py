@@ -31,7 +31,7 @@ QUANTILES = np.linspace(0.5, 99.5, 100)
 GRID = 60
 CONTAINED = (0.95, 0.75, 0.5, 0.25)
 """Shares of the particles inside the contours of Fig. 6."""
-MOST_FOR_DENSITY = 1500
+MAX_FOR_DENSITY = 1500
 N_PAIRED = 3
 """Descriptors of Fig. 6, the first ones of the study."""
 
@@ -145,7 +145,7 @@ def pair_density(table: FloatArray, x: FloatArray, y: FloatArray) -> tuple[Float
 
     Scott's bandwidth n^(-1/6) times the covariance.
     """
-    few = table[:: max(1, len(table) // MOST_FOR_DENSITY)].T
+    few = table[:: max(1, len(table) // MAX_FOR_DENSITY)].T
     density = gaussian_kde(few)
     values = density(np.stack(np.meshgrid(x, y)).reshape(2, -1)).reshape(GRID, GRID)
     return values, np.unique(np.quantile(density(few), [1 - share for share in CONTAINED]))
@@ -181,7 +181,7 @@ PERCENTAGES = (
 PAPERS_MODEL = "gaussian_field"
 AT_NOISE = ("equivalent_radius", "surface_area", "aspect_ratio", "sphericity")
 PAPERS_PAIRS = AT_NOISE[:3]
-LEAST_GAIN, MOST_FLOORS, MOST_ENERGY, LEAST_NOVELTY = 8.0, 2.0, 0.3, 0.9
+MIN_GAIN, MAX_FLOORS, MAX_ENERGY, MIN_NOVELTY = 8.0, 2.0, 0.3, 0.9
 
 
 def size_column(study: PopulationStudy) -> int | None:
@@ -300,7 +300,7 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[_Target
         column = study.keys.index("aspect_ratio")
         papers = paper.distances.wasserstein.mean(axis=0)[0, column]
         name = N_("aspect ratio: distance of the Gaussian field over that of the model")
-        yield name, papers / far[0, column], AT_LEAST, LEAST_GAIN, papers / noise[:, 0, column]
+        yield name, papers / far[0, column], AT_LEAST, MIN_GAIN, papers / noise[:, 0, column]
     if columns := [study.keys.index(key) for key in AT_NOISE if key in study.keys]:
         highest = np.percentile(noise, 95, axis=0)
         worst, halves = ((each / highest)[..., columns].max(axis=(-2, -1)) for each in (far, noise))
@@ -311,13 +311,13 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[_Target
         gaps = study.floor.kolmogorov[:, 0, column]
         gap = model.distances.kolmogorov[:, 0, column].mean() / gaps.mean()
         name = N_("V/CH: Kolmogorov-Smirnov distance over the sampling noise")
-        yield name, gap, AT_MOST, MOST_FLOORS, gaps / gaps.mean()
+        yield name, gap, AT_MOST, MAX_FLOORS, gaps / gaps.mean()
     if pairs := [i for i, pair in enumerate(study.pairs) if set(pair) <= set(PAPERS_PAIRS)]:
         energy = 100 * model.distances.energy.mean(axis=0)[pairs].max()
         name = N_("pairs of r_eq, A, AR: the largest energy distance [%]")
-        yield name, energy, AT_MOST, MOST_ENERGY, 100 * study.floor.energy[:, pairs].max(axis=1)
+        yield name, energy, AT_MOST, MAX_ENERGY, 100 * study.floor.energy[:, pairs].max(axis=1)
     yield N_("rejected draws [%]"), 100 * model.rejected.mean(), AT_MOST, 0.0, None
-    yield N_("median novelty"), model.novelty.mean(), AT_LEAST, LEAST_NOVELTY, None
+    yield N_("median novelty"), model.novelty.mean(), AT_LEAST, MIN_NOVELTY, None
 
 
 def _notes(study: PopulationStudy) -> tuple[str, ...]:

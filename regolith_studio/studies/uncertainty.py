@@ -85,6 +85,7 @@ def sobol_shares(results: FloatArray) -> tuple[FloatArray, FloatArray]:
     a, b, mixed = results[0], results[1], results[2:]
     variance = np.concatenate([a, b]).var(axis=0)
     safe = np.where(variance > 0.0, variance, np.inf)
+    # Less the mean: the estimate stays unbiased, and its noise would grow with the mean.
     first = ((b - results[:2].mean(axis=(0, 1))) * (mixed - a)).mean(axis=1) / safe
     total = 0.5 * ((a - mixed) ** 2).mean(axis=1) / safe
     return first.T, total.T

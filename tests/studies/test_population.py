@@ -5,15 +5,22 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 from scipy.stats import wasserstein_distance
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.harmonics.io import from_complex_rows
+from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies import StudyProgress
-from regolith_studio.studies.figures.population import components_figure, write_population_study
+from regolith_studio.studies.figures.population import (
+    components_figure,
+    density_figure,
+    quantile_figure,
+    write_population_study,
+)
 from regolith_studio.studies.population import (
     KEYS,
     N_FLOOR_SPLITS,
@@ -107,6 +114,20 @@ def test_that_the_number_of_parts_is_shown_with_its_criterion(
     np.testing.assert_allclose(heights, np.array(curve) - min(curve))
     without = replace(small[1], models=small[1].models[:1])
     assert components_figure(without) is None
+
+
+def test_that_figures_show_every_model_in_a_colour_of_its_own(
+    small: tuple[list[StudyProgress], PopulationStudy],
+) -> None:
+    study = replace(small[1], models=tuple(replace(small[1].models[0], key=key) for key in MODELS))
+    for figure in (density_figure(study), quantile_figure(study)):
+        handles, labels = figure.axes[0].get_legend_handles_labels()
+        colours = {
+            str(to_hex(handle.get_edgecolor() if hasattr(handle, "get_edgecolor") else handle.get_color()))
+            for handle, label in zip(handles, labels, strict=True)
+            if label in {model.label for model in MODELS.values()}
+        }
+        assert len(colours) == len(MODELS)
 
 
 def test_that_as_many_are_drawn_as_were_held_out() -> None:

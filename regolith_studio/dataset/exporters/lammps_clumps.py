@@ -55,6 +55,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     bodies = pack_on_lattice(dataset, options)
     clumps, said = [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
+        # LAMMPS knows no rigid body of one sphere.
         clumps.append(fit_spheres_by(one.shape, max(2, options.n_spheres), options.max_error))
         error = sphere_fit_errors(one.shape, clumps[-1]).jaccard
         said.append(f"  {key}: {len(clumps[-1])} spheres, mismatch {error:.3f}")

@@ -113,6 +113,7 @@ def _units(shapes: Sequence[MjcfShape], bodies: PackedParticles, density: float)
     for units in UNITS:
         if smallest * units.per_kilogram * units.per_metre**2 > MIN_MOMENT:
             return units
+    # Moments of inertia grow with the fifth power of the size.
     factor = (MIN_MOMENT / (smallest * UNITS[-1].per_kilogram * UNITS[-1].per_metre ** 2)) ** 0.2
     raise DatasetError(
         f"MuJoCo refuses bodies with so small moments of inertia as those of the smallest particle, "

@@ -74,6 +74,7 @@ def _case(dataset: Dataset, options: ExportOptions, keys: list[str]) -> dict[str
                 "sizes": rows.tolist(),
             }
         )
+    # The largest square within the tube.
     inner = test.diameter / np.sqrt(2.0)
     reach = 3 * test.diameter
     return case_settings(options) | {

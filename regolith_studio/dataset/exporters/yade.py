@@ -125,6 +125,7 @@ def _members(shape: Polyhedron) -> dict[str, object]:
     middle = (shape.centroid - centre) / rest
     missing = _second_moments(shape.mesh) - second - rest * np.outer(middle, middle)
     squares, axes = np.linalg.eigh(missing)
+    # A pair of points of rest / 6 each adds rest / 3 times the square of its distance.
     reach = np.sqrt(squares / (rest / 3)) * axes
     points = [[*(middle + side * arm).tolist(), rest / 6] for arm in reach.T for side in (-1.0, 1.0)]
     return members | {"mass_shares": shares.tolist(), "points": points}

@@ -19,6 +19,7 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     picture, drawing = folder / f"{stem}.png", folder / f"{stem}.svg"
     with MATPLOTLIB_LOCK:
         figure.savefig(picture, dpi=DOTS_PER_INCH)
+        # Identifiers are random and the date is that of the day otherwise.
         with matplotlib.rc_context({"svg.hashsalt": "regolith-studio"}):
             figure.savefig(drawing, metadata={"Date": None})
     return picture, drawing
@@ -43,4 +44,5 @@ def with_subscript(symbol: str) -> str:
     return re.sub(r"_(\w+)", r"$_\\mathrm{\1}$", symbol)
 
 
+# Four threads that set formulas and save figures at a time ended the process by a damaged heap.
 MATPLOTLIB_LOCK = RLock()

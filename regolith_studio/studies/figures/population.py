@@ -1,6 +1,6 @@
 """Figs. 4, 5 and 6: densities of descriptors, measured and virtual."""
 
-from itertools import combinations
+from itertools import combinations, cycle
 from math import ceil
 from pathlib import Path
 
@@ -30,7 +30,7 @@ from regolith_studio.studies.population_tables import (
     target_table,
 )
 
-COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")
 """Okabe and Ito's palette; the measured sample is black and grey."""
 MEASURED = "#bbbbbb"
 GREYS = ("#e4e4e4", "#c8c8c8", "#a8a8a8", "#888888")
@@ -57,7 +57,9 @@ def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
                 linestyle=":",
                 label=cut_label(study),
             )
-        for table, weight, model, colour in zip(tables[2:], weights[2:], study.models, COLOURS, strict=False):
+        for table, weight, model, colour in zip(
+            tables[2:], weights[2:], study.models, cycle(COLOURS), strict=False
+        ):
             axis.hist(
                 table[:, column],
                 bins,
@@ -84,7 +86,7 @@ def quantile_figure(study: PopulationStudy) -> Figure:
         if study.cut_degree < study.l_max:
             cut = np.percentile(study.cut[:, column], QUANTILES)
             axis.plot(measured, cut, ":", color="black", label=cut_label(study))
-        for model, colour in zip(study.models, COLOURS, strict=False):
+        for model, colour in zip(study.models, cycle(COLOURS), strict=False):
             quantiles = np.percentile(model.table[:, column], QUANTILES)
             axis.plot(measured, quantiles, ".", color=colour, markersize=3, label=MODELS[model.key].label)
         axis.set_xlabel(f"measured {_label(study, column)}")
@@ -120,7 +122,7 @@ def pair_figure(study: PopulationStudy) -> Figure:
     handles = [Line2D([], [], color=MEASURED, linewidth=6, label="measured")]
     handles += [
         Line2D([], [], color=colour, label=MODELS[model.key].label)
-        for model, colour in zip(study.models, COLOURS, strict=False)
+        for model, colour in zip(study.models, cycle(COLOURS), strict=False)
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
     return figure
@@ -133,7 +135,7 @@ def components_figure(study: PopulationStudy) -> Figure | None:
         return None
     figure = Figure(figsize=(5, 3.4), layout="constrained")
     axis = figure.subplots()
-    for (model, curve), colour in zip(curves, COLOURS, strict=False):
+    for (model, curve), colour in zip(curves, cycle(COLOURS), strict=False):
         numbers, best = np.arange(1, len(curve) + 1), int(curve.argmin())
         axis.plot(numbers, curve - curve.min(), "o-", color=colour, label=MODELS[model.key].label)
         axis.plot(numbers[best], 0.0, "o", color=colour, markersize=10, fillstyle="none")
