@@ -326,6 +326,7 @@ def _fill(folder: Path, files: Mapping[str, Content] | Iterable[tuple[str, Conte
                 os.mkdir(path.parent)  # noqa: PTH102
                 folders.add(path.parent)
             syncer.close(_write_file(path, content))
+    # After their files, the inner folders first: a name on the disk then has its content there, too.
     for inner in sorted(folders, key=lambda one: len(one.parts), reverse=True):
         sync_folder(inner)
 

@@ -212,10 +212,13 @@ def _open(path: Path) -> sqlite3.Connection:
 
 def _locked(path: Path) -> sqlite3.Connection:
     """A connection that keeps all others out, in whichever thread it is used (one at a time)."""
+    # No waiting: who has the file open keeps it for hours, and the user shall read that at once.
     connection = sqlite3.connect(path, timeout=0.0, check_same_thread=False)
     try:
         connection.execute("PRAGMA trusted_schema = OFF")
         connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+        # SQLite takes the lock with the first transaction, and in this mode keeps it until the file is
+        # closed.
         connection.execute("BEGIN EXCLUSIVE")
         connection.execute("COMMIT")
     except BaseException:

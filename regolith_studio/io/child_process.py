@@ -53,6 +53,7 @@ def private_pipes(buffering: int = -1) -> tuple[Any, Any]:
     """In the child: the pipes to the parent, out of reach of anything that prints."""
     source, target = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDWR)
+    # A library that prints, also one in C, would damage the messages.
     for number in (0, 1, 2):
         os.dup2(nothing, number)
     os.close(nothing)

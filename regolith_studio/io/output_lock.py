@@ -91,6 +91,7 @@ def _acquire(place: Path, output: Path) -> None:
     place.parent.mkdir(parents=True, exist_ok=True)
     file = hidden_beside(place, LOCK)
     try:
+        # Known as soon as it is there: two of 300 signals came in between and left a lock behind.
         _held[place] = _Held(lock_file(file), file, made)
     except BlockingIOError:
         raise FileError(f"Another process is writing to {output}; wait for its end.") from None
@@ -104,6 +105,8 @@ def lock_file(file: Path) -> int:
     Raises BlockingIOError if it is locked already. Raises OSError if it cannot be made.
     """
     while True:
+        # Opened and locked, it must still be the file of that name: its last owner may have removed it in
+        # between.
         handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
         try:
             _lock(handle)

@@ -44,6 +44,7 @@ def parse_strict_json(text: str, where: str) -> Any:
     Raises FileError if the text is not JSON, nests too deeply, repeats a key or holds NaN or an infinity.
     """
     try:
+        # json itself keeps the last of equal keys and reads NaN, both without a word.
         loose = json.loads(text, object_pairs_hook=_Pairs, parse_constant=_Nonfinite)
         return _strict(loose, where, "")
     except RecursionError as error:

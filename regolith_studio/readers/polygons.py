@@ -78,6 +78,7 @@ def _in_its_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:
     normal = np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)
     dropped = int(np.argmax(np.abs(normal)))
     first, second = [axis for axis in range(3) if axis != dropped]
+    # What is left without y, x and z, is left-handed.
     if (normal[dropped] < 0) != (dropped == 1):
         first, second = second, first
     return points[:, [first, second]]

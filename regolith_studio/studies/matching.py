@@ -247,8 +247,8 @@ class _Comparison:
             for j, second in enumerate(self._parts[i:], start=i):
                 product = weights[i] @ self._distances[np.ix_(first, second)]
                 total = np.einsum("bn,bn->b", product, weights[j])
-                # Without pairs of a particle with itself: their distance of 0 would lower the mean within a part
-                # and so move small parts away from the target.
+                # Without pairs of a particle with itself: their distance of 0 would lower the mean within a
+                # part and so move small parts away from the target.
                 pairs = sums[i] * sums[j] - (squares[i] if i == j else 0.0)
                 mean[:, i, j] = mean[:, j, i] = total / pairs
         to_target, within = mean[:, 0, 1:], mean[:, 0, 0]

@@ -68,6 +68,7 @@ def run_job(job: Job, listener: Listener, stopped: Callable[[], bool]) -> JobRes
             result: JobResult = end.value
             return result
         if stopped():
+            # The last step is dropped: what it yielded would be shown after the user has stopped the job.
             steps.close()
             return Stopped()
         listener(step)

@@ -214,6 +214,7 @@ class ProcessPoolRunner:
         self.workers = workers or cores()
         self.memory = memory or memory_limit(self.workers)
         self._context = multiprocessing.get_context("spawn")
+        # Without a lock: a flag is one aligned word, and a late look at it costs one more step.
         self._flags: Any = self._context.Array("q", SLOTS, lock=False)
         self._number = 0
         self._closed, self._deadline = False, math.inf
@@ -238,6 +239,8 @@ class ProcessPoolRunner:
         with self._lock:
             self._waiting.append(handle)
             if self._manager is None:
+                # Before multiprocessing's own exit function, which joins the processes and would wait for
+                # ever.
                 self._at_exit = multiprocessing.util.Finalize(self, self.close, exitpriority=100)
                 self._manager = threading.Thread(target=self._manage, name="process pool", daemon=True)
                 self._manager.start()
@@ -344,8 +347,11 @@ class ProcessPoolRunner:
     def _start_worker(self) -> _Worker:
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=run_jobs, args=(theirs, self._flags), name="worker")
+        # Libraries read the number of threads when they are loaded, and a spawned process inherits what is
+        # blocked.
         with _SingleThreadedBlas(), interrupts_blocked():
             process.start()
+        # The child has its own copy: only without this one its death ends the pipe.
         theirs.close()
         worker = _Worker(process, ours)
         self._workers.append(worker)

@@ -109,6 +109,7 @@ class _ThreadHandle:
         self.finish(run_job(self.job, self.mailbox.put, lambda: not self.token.wait_while_paused()))
 
     def finish(self, ending: JobResult) -> None:
+        # Stopped after its last step: whoever stopped it expects no result any more.
         if self.token.stopped and isinstance(ending, Finished):
             ending = Stopped()
         self.end.set()

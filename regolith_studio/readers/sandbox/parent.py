@@ -123,6 +123,7 @@ class Sandbox:
         self._ends_with_process = False
         process, self._process = self._process, None
         if process is not None:
+            # Else Popen would try to collect the child of another process and warn that it runs.
             process.returncode = 0
             for pipe in (process.stdin, process.stdout):
                 if pipe is not None:
@@ -131,9 +132,11 @@ class Sandbox:
     def _answer(self, message: SandboxMessage, seconds: float) -> SandboxMessage:
         """The child's answer, or a message of status ``late``, ``busy`` or ``dead``."""
         answer = self._exchange(self._running_process(), message, seconds)
+        # Only what no child has received is sent again: a file that has ended one child would end the next.
         if answer.header["status"] == "unheard":
             self.close()
             answer = self._exchange(self._running_process(), message, seconds)
+        # At once, or the next file would wait 80 ms for its process.
         if _must_replace_child(answer):
             with contextlib.suppress(OSError):  # the next request raises it
                 self._start_process()
@@ -161,6 +164,7 @@ class Sandbox:
             return receive(process.stdout)  # type: ignore[arg-type]
         except (EOFError, OSError, ValueError, KeyError):
             return SandboxMessage({"status": "late" if late.is_set() else _exit_reason(process)})
+        # The answer that is still to come would be taken for that of the next request.
         except BaseException:
             self.close()
             raise

@@ -462,6 +462,7 @@ def _ordered(slices: list[DicomFrame]) -> tuple[list[DicomFrame], float, tuple[s
     if gaps.min() <= SPACING_TOLERANCE * np.median(gaps):
         raise FileError("has two slices at one place; export one series into a folder of its own.")
     rounding = min(*(each.rounding for each in slices), MAX_ROUNDING * step)  # trailing zeros are not written
+    # Both positions of a gap are rounded, by half of the last digit each.
     if np.abs(gaps - step).max() > max(SPACING_TOLERANCE * step, 1.01 * rounding):
         raise FileError(
             f"has uneven slices, {gaps.min():.4g} to {gaps.max():.4g} mm apart: "

@@ -99,6 +99,7 @@ def open_nifti(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
         voxels = DeflatedVoxels(path, 0, start, header, stored)
     else:
         voxels = PlainVoxels(path, start, header, stored)
+    # By nifti1.h, a slope of 0 says that the voxels are not scaled.
     if slope == 0.0 or (slope, intercept) == (1.0, 0.0) or not np.isfinite([slope, intercept]).all():
         return voxels
     scaled = np.dtype(np.float64 if stored.itemsize > 2 else np.float32)
@@ -146,6 +147,7 @@ def _check_signature(head: bytes, length: int) -> None:
 def _offset(value: float, length: int) -> int:
     if not (np.isfinite(value) and 0 <= value < 2**40 and value == int(value)) or 0 < value < length:
         raise FileError(f"is a broken NIfTI file: its voxels cannot begin at byte {value:g}.")
+    # 0 where it is not stated: after the header come the four bytes that announce extensions.
     return int(value) or length + 4
 
 
@@ -198,6 +200,7 @@ def _is_mirrored(fields: Fields) -> bool:
     if sform > 0:
         matrix = np.array(fields["rows"], dtype=np.float64).reshape(3, 4)[:, :3]
         return bool(np.isfinite(matrix).all() and np.linalg.det(matrix) < 0)
+    # A quaternion has no mirror: pixdim[0], qfac of nifti1.h, is the sign of the third axis.
     return bool(qform > 0 and fields["pixdim"][0] < 0)
 
 
