@@ -122,10 +122,9 @@ def tube_mesh(diameter: float, height: float) -> Mesh:
     faces = []
     for ring in range(4):
         a, b = ring * sides, (ring + 1) % 4 * sides
-        faces += [np.column_stack([a + here, b + here, b + there])]
-        faces += [np.column_stack([a + here, b + there, a + there])]
-    mesh = Mesh(vertices, np.vstack(faces))
-    return mesh if mesh.volume > 0.0 else Mesh(vertices, np.vstack(faces)[:, ::-1])
+        faces += [np.column_stack([b + there, b + here, a + here])]
+        faces += [np.column_stack([a + there, b + there, a + here])]
+    return Mesh(vertices, np.vstack(faces))
 
 
 def box_mesh(corners: FloatArray) -> Mesh:

@@ -288,6 +288,7 @@ def _rising(shares: Sequence[float]) -> FloatArray:
     """Cumulative shares that end at exactly 1."""
     total = np.cumsum(shares)
     total[-1] = 1.0
+    # By rounding an earlier sum may be above 1, so that the sums would not ascend.
     return np.asarray(np.minimum(total, 1.0))
 
 

@@ -210,4 +210,5 @@ def _edge_distances(one: _Forms, other: _Forms, between: FloatArray) -> tuple[In
     gaps = other.starts[which, j] + between[which] - one.starts[which, i]
     # The cross product of two edges may point into the first body.
     distance = np.einsum("pi,pi->p", normals, gaps) * np.sign(outwards)
+    # Parallel edges span no facet.
     return which, np.where(lengths > PARALLEL, distance / np.maximum(lengths, PARALLEL), -np.inf)

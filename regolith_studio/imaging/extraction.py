@@ -423,6 +423,7 @@ def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface, Sca
     part = within(cut.box, cut.wider)
     body, notes = _one_body(crop.own[part], cut)
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
+    # Files state the edges with rounding, often the one along z in another field than those along x and y.
     cubic = float(np.ptp(cut.voxel_size)) <= 1e-3 * float(cut.voxel_size.max())
     found = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
     clipped, end = clipped_share(crop.values[part], body)

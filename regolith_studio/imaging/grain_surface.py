@@ -165,6 +165,7 @@ def _blur(rim: Floats, noise: float, mesh: Mesh, cubic_voxels: bool) -> FloatArr
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(normals, axis=1) / 2
     along = (normals / np.maximum(2 * area, 1e-12)[:, None]) ** 2
+    # A fixed point: what is expected is of degree 1 in the blur.
     for _ in range(_BLUR_STEPS):
         expected = (area * np.sqrt(along @ blur**2)) @ along
         blur = np.clip(blur * measured / expected, *_BLURS)

@@ -332,6 +332,7 @@ def _mean(blocks: tuple[int, ...], block: IntArray, values: Floats) -> tuple[Flo
 
     def blurred(weights: Floats | None) -> Floats:
         sums = np.bincount(block, weights, minlength=size).reshape(blocks).astype(np.float32) / _BLOCK**3
+        # Normalised convolution: unknown voxels, also those beyond the array, have neither value nor weight.
         smoothed = ndimage.gaussian_filter(sums, _REACH / _BLOCK, mode="constant", truncate=2.0)
         return np.asarray(smoothed, np.float32)
 
@@ -342,6 +343,7 @@ def _mean(blocks: tuple[int, ...], block: IntArray, values: Floats) -> tuple[Flo
 def _spread(blocks: Floats, shape: tuple[int, ...]) -> Floats:
     """Values of blocks, interpolated at voxels."""
     for axis, n in enumerate(shape):
+        # The value of a block is that of its middle.
         at = np.clip((np.arange(n) - (_BLOCK - 1) / 2) / _BLOCK, 0, blocks.shape[axis] - 1)
         low = np.minimum(at.astype(np.int64), max(blocks.shape[axis] - 2, 0))
         high = np.minimum(low + 1, blocks.shape[axis] - 1)

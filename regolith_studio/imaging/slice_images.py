@@ -1,5 +1,6 @@
 """Pictures of the slices of a volume that may be larger than the memory."""
 
+import math
 from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any
@@ -42,15 +43,10 @@ class SliceImages:
         return self.array if self.coarse is None else self.coarse
 
 
-def coarse_step(nbytes: int) -> int:
-    """How many voxels apart those of a copy of at most :data:`COARSE_BYTES` must lie."""
-    return max(1, int(np.ceil((nbytes / COARSE_BYTES) ** (1 / 3) - 1e-9)))
-
-
 def coarse_copy(source: SliceSource) -> Generator[tuple[int, int], None, tuple[NDArray[Any], int]]:
     """Every n-th voxel of a volume and n, read slice by slice; tells how many are done, of how many."""
     nx, ny, nz = source.shape
-    step = coarse_step(nx * ny * nz * source.dtype.itemsize)
+    step = max(1, math.ceil((nx * ny * nz * source.dtype.itemsize / COARSE_BYTES) ** (1 / 3)))
     places = range(0, nz, step)
     copy = np.empty((len(places), -(-ny // step), -(-nx // step)), source.dtype)
     for at, z in enumerate(places):

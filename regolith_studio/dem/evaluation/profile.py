@@ -114,6 +114,7 @@ def _crossings(discs: Discs, places: FloatArray, width: float) -> tuple[IntArray
     """Lines and discs that cross: two arrays of indices."""
     low = np.ceil((discs.u - discs.radius - places[0]) / width).astype(np.int64)
     high = np.floor((discs.u + discs.radius - places[0]) / width).astype(np.int64)
+    # A small disc may lie between two lines.
     counts = np.maximum(high - low + 1, 0)
     disc = np.repeat(np.arange(len(discs.u)), counts)
     step = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)

@@ -97,6 +97,7 @@ def denoised_volume(
     """
     given = SharedArray(source.array)
     ranges = slab_ranges(source.shape)
+    # No filter leaves the range of the values: one pass can filter and count.
     edges, n_not_finite = _bins(given, run)
     middle = source.shape[2] // 2
     noise = noise_of(given.slices(middle, middle + 1)) if how.method == "non-local-means" else 0.0

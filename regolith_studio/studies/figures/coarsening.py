@@ -51,6 +51,7 @@ def tradeoff_figure(study: CoarseningStudy) -> Figure:
         axis.errorbar(
             x[r],
             y[r],
+            # The band of the resamples need not hold the value, and matplotlib refuses bars below 0.
             xerr=np.maximum(0.0, [[x[r] - x_ends[0, r]], [x_ends[1, r] - x[r]]]),
             yerr=np.maximum(0.0, [[y[r] - y_ends[0, r]], [y_ends[1, r] - y[r]]]),
             fmt="o",

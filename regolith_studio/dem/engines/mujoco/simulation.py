@@ -85,7 +85,7 @@ def _contact(prepared: PreparedCase, settings: MujocoSettings, friction: float) 
     # MuJoCo's coefficients of rolling and spinning are lengths: the fraction times the radius, half of d.
     rolling = prepared.case.contact.rolling_friction / 2
     return {
-        "friction": [friction, max(rolling, 1e-6), max(rolling, 1e-6)],
+        "friction": [friction, rolling, rolling],
         "condim": 6 if rolling > 0.0 else 3,
         "solref": [settings.contact_steps * settings.time_step, 1.0],
         "solimp": list(CONTACT_SOFTNESS),
