@@ -57,13 +57,13 @@ def sphere_masses(shape: Polyhedron, spheres: FloatArray) -> SphereMasses:
     """
     size = shape.volume ** (1 / 3)
     centres, radii = (spheres[:, :3] - shape.centroid) / size, spheres[:, 3] / size
-    wanted = np.asarray(shape.mesh.inertia) / size**5
+    inertia = np.asarray(shape.mesh.inertia) / size**5
     tensors = ((centres**2).sum(axis=1) + 0.4 * radii**2)[:, None, None] * np.eye(3)
     tensors = tensors - centres[:, :, None] * centres[:, None, :]
     upper = np.triu_indices(3)
     first = CENTRE_WEIGHT * np.vstack([np.ones(len(spheres)), centres.T])
-    rows = np.vstack([first, tensors[:, *upper].T / wanted.max()])
-    goal = np.array([CENTRE_WEIGHT, 0.0, 0.0, 0.0, *(wanted[upper] / wanted.max())])
+    rows = np.vstack([first, tensors[:, *upper].T / inertia.max()])
+    goal = np.array([CENTRE_WEIGHT, 0.0, 0.0, 0.0, *(inertia[upper] / inertia.max())])
     even = radii**3 / (radii**3).sum()
     matrix = np.vstack([rows * even, EVENNESS * np.eye(len(spheres))])
     solution = lsq_linear(matrix, np.concatenate([goal, np.full(len(spheres), EVENNESS)]), (LOWEST, np.inf))
@@ -153,10 +153,10 @@ def fit_spheres(shape: Polyhedron, count: int) -> FloatArray:
     mismatch = _Mismatch.of(shape)
     # A wide blur without moments first: hidden spheres would not find their way with a narrow one.
     spheres = mismatch.descended(spheres, WIDTHS[0], target, 0.0 * scaling)
-    wanted = target.copy()
+    shifted = target.copy()
     for _ in range(ROUNDS):  # the method of multipliers, which takes out the error of the blur, too
-        spheres = mismatch.descended(spheres, WIDTHS[1], wanted, scaling)
-        wanted += target - union_moments(spheres).values
+        spheres = mismatch.descended(spheres, WIDTHS[1], shifted, scaling)
+        shifted += target - union_moments(spheres).values
     spheres = _with_moments(spheres, target, scaling)
     return np.asarray(spheres * size + [*shape.centroid, 0.0])
 
@@ -310,12 +310,12 @@ class _Mismatch:
         return cls(points, np.where(depth[near] <= 0.0, -share, share), share * _monomials(points))
 
     def descended(
-        self, spheres: FloatArray, width: float, wanted: FloatArray, scaling: FloatArray
+        self, spheres: FloatArray, width: float, target: FloatArray, scaling: FloatArray
     ) -> FloatArray:
-        """The spheres at a minimum nearby, with the moments `wanted` as far as their weight goes."""
+        """The spheres at a minimum nearby, with the moments `target` as far as their weight goes."""
 
         def value(parameters: FloatArray) -> tuple[float, FloatArray]:
-            total, gradient = self._value(parameters.reshape(-1, 4), width, wanted, scaling)
+            total, gradient = self._value(parameters.reshape(-1, 4), width, target, scaling)
             return total, gradient.ravel()
 
         answer = minimize(
@@ -330,14 +330,14 @@ class _Mismatch:
         return np.asarray(answer.x).reshape(-1, 4)
 
     def _value(
-        self, spheres: FloatArray, width: float, wanted: FloatArray, scaling: FloatArray
+        self, spheres: FloatArray, width: float, target: FloatArray, scaling: FloatArray
     ) -> tuple[float, FloatArray]:
         """The volume plus the moments' squared errors, up to a constant; derivatives, shape (n, 4)."""
         depths = spheres[:, 3] - cdist(self.points, spheres[:, :3])
         nearest = depths.argmax(axis=1)
         depth = depths[np.arange(len(depths)), nearest]
         share = np.asarray(expit(depth / width))
-        off = scaling * (self.monomials.T @ share - wanted)
+        off = scaling * (self.monomials.T @ share - target)
         total = float(self.signs @ share) + MOMENT_WEIGHT * float(off @ off)
         weights = self.signs + 2 * MOMENT_WEIGHT * self.monomials @ (scaling * off)
         slope = weights * share * (1.0 - share) / width

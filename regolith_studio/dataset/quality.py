@@ -120,10 +120,10 @@ class QualityCurve:
         return next((point.count for point in self.points if point.mean <= self.noise_mean), None)
 
 
-def curve_counts(n_particles: int, wanted: int | None = None) -> tuple[int, ...]:
-    """Numbers of representatives for a curve of a population, including `wanted`."""
+def curve_counts(n_particles: int, count: int | None = None) -> tuple[int, ...]:
+    """Numbers of representatives for a curve of a population, including `count`."""
     fitting = {count for count in COUNTS if count <= n_particles}
-    return tuple(sorted(fitting | ({wanted} if wanted else set())))
+    return tuple(sorted(fitting | ({count} if count else set())))
 
 
 def quality_steps(

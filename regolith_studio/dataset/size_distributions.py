@@ -142,10 +142,10 @@ class SieveSizeDistribution(SizeDistribution):
 
     def quantile(self, probabilities: ArrayLike) -> FloatArray:
         rising, openings = np.concatenate([[0.0], _rising(self.shares)]), np.array(self.openings_um)
-        wanted = np.asarray(probabilities, dtype=np.float64)
-        upper = np.clip(np.searchsorted(rising, wanted), 1, len(openings) - 1)
+        target = np.asarray(probabilities, dtype=np.float64)
+        upper = np.clip(np.searchsorted(rising, target), 1, len(openings) - 1)
         step = np.maximum(rising[upper] - rising[upper - 1], np.finfo(float).tiny)
-        share = np.clip((wanted - rising[upper - 1]) / step, 0.0, 1.0)
+        share = np.clip((target - rising[upper - 1]) / step, 0.0, 1.0)
         return np.asarray(openings[upper - 1] + share * (openings[upper] - openings[upper - 1]))
 
     def moment(self, power: float) -> float:

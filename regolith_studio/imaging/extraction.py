@@ -195,7 +195,7 @@ class LabelSelection:
     circle: ScanCircle | None = None
 
     @property
-    def wanted(self) -> dict[int, Box]:
+    def selected(self) -> dict[int, Box]:
         """Boxes of the labels that become particles."""
         left_out = {*self.border, *self.small}
         return {label: box for label, box in self.boxes.items() if label not in left_out}
@@ -387,7 +387,7 @@ def _cuts(
             settings,
             chosen.strays.get(label, (1, 0)),
         )
-        for label, box in chosen.wanted.items()
+        for label, box in chosen.selected.items()
     ]
 
 
@@ -425,26 +425,26 @@ def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface, Sca
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
     # Files state the edges with rounding, often the one along z in another field than those along x and y.
     cubic = float(np.ptp(cut.voxel_size)) <= 1e-3 * float(cut.voxel_size.max())
-    found = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
+    grey_surface = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
     clipped, end = clipped_share(crop.values[part], body)
     if clipped > _MAX_CLIPPED:
         notes.append(
             f"{100 * clipped:.0f} % of its voxels have the grey value {end}, where the scan was clipped: its "
             "surface lies too far outside, by an unknown distance."
         )
-    if isinstance(found, str):
-        notes.append(f"{_OF_MASK}: {found}.")
+    if isinstance(grey_surface, str):
+        notes.append(f"{_OF_MASK}: {grey_surface}.")
         return cut.mask_surface(body), tuple(notes), "mask", None
-    if not found.scan.follows_grey:
+    if not grey_surface.scan.follows_grey:
         notes.append(
-            f"{_OF_MASK}, its volume that of the grey values: their noise is {100 * found.scan.noise:.0f} % "
+            f"{_OF_MASK}, its volume that of the grey values: their noise is {100 * grey_surface.scan.noise:.0f} % "
             "of the contrast."
         )
     return (
-        cut.placed(found.mesh, cut.wider),
+        cut.placed(grey_surface.mesh, cut.wider),
         tuple(notes),
         "grey",
-        None if clipped > _MAX_CLIPPED else found.scan,
+        None if clipped > _MAX_CLIPPED else grey_surface.scan,
     )
 
 

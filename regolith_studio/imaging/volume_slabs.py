@@ -308,8 +308,8 @@ def sparse_slices(source: SliceSource, seconds: float, *, in_order: bool = False
     slice_bytes = nx * ny * source.dtype.itemsize
     thin = max(1, math.ceil(math.sqrt(slice_bytes / SLICE_BYTES)))
     most = max(1, ALL_BYTES * thin**2 // slice_bytes)
-    wanted = _first_places(nz, most) if in_order else _halved_distances(nz, most)
-    places, values = _read_while(source, wanted, thin, time.monotonic() + seconds)
+    runs = _first_places(nz, most) if in_order else _halved_distances(nz, most)
+    places, values = _read_while(source, runs, thin, time.monotonic() + seconds)
     size = np.asarray(source.voxel_size, float) * np.array([nx, ny, nz]) / values.shape
     if in_order:
         size[2] = np.asarray(source.voxel_size, float)[2] * places.step
@@ -317,12 +317,12 @@ def sparse_slices(source: SliceSource, seconds: float, *, in_order: bool = False
 
 
 def _read_while(
-    source: SliceSource, wanted: Iterator[range], thin: int, end: float
+    source: SliceSource, runs: Iterator[range], thin: int, end: float
 ) -> tuple[range, NDArray[Any]]:
     """The last of the runs of places whose slices could all be read until `end`, at least the first run."""
     read: dict[int, NDArray[Any]] = {}
     places = range(0)
-    for run in wanted:
+    for run in runs:
         for z in run:
             if places and time.monotonic() > end:
                 break

@@ -153,7 +153,7 @@ def read_arrays(path: Path, what: str) -> dict[str, NDArray[Any]]:
     Raises FileError if it cannot be read, is damaged, or would unpack to more than MAX_UNPACKED_BYTES.
     """
     check_regular(path)
-    with _said(path, what):
+    with _reported(path, what):
         _check_unpacked(path)
         with np.load(path, allow_pickle=False) as content:
             return {name: np.asarray(content[name]) for name in content.files}
@@ -165,7 +165,7 @@ def read_archive(path: Path, what: str) -> dict[str, bytes]:
     Raises FileError as :func:`read_arrays`.
     """
     check_regular(path)
-    with _said(path, what):
+    with _reported(path, what):
         _check_unpacked(path)
         with zipfile.ZipFile(path) as archive:
             return {name: archive.read(name) for name in archive.namelist()}
@@ -203,7 +203,7 @@ def check_regular(path: Path) -> None:
 
 
 @contextmanager
-def _said(path: Path, what: str) -> Iterator[None]:
+def _reported(path: Path, what: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:

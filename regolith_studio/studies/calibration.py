@@ -275,7 +275,7 @@ def _fit(
         ) from None
 
     there = np.isfinite(results)
-    wanted = (results[there] - target.value) / target.scale
+    deviations = (results[there] - target.value) / target.scale
     stated = errors[there & np.isfinite(errors)]
     # What a single run states of its noise is noisy itself: the mean of all runs is taken.
     noise = float(np.sqrt(np.mean(stated**2))) if len(stated) else target.noise
@@ -285,10 +285,10 @@ def _fit(
         kernel = trend + ConstantKernel(amplitude**2) * RBF(length * ranges)
         noises.append(factor * noise / target.scale)
         process = GaussianProcessRegressor(kernel, alpha=noises[-1] ** 2, optimizer=None)
-        if len(wanted):
-            process.fit(places[there], wanted)
+        if len(deviations):
+            process.fit(places[there], deviations)
         processes.append(process)
-        evidence.append(process.log_marginal_likelihood_value_ if len(wanted) else 0.0)
+        evidence.append(process.log_marginal_likelihood_value_ if len(deviations) else 0.0)
     weights = np.exp(np.array(evidence) - logsumexp(evidence))
     return _Models(tuple(processes), weights, np.array(noises))
 

@@ -123,9 +123,9 @@ def coarsening_errors(
     """
     try:
         goal = Target.of((target or TargetChoice()).mesh_of(mesh))
-        wanted = describe(goal.mesh, LOSS_KEYS, box_metric)
+        measured = describe(goal.mesh, LOSS_KEYS, box_metric)
         results = coarsened_rows(goal, rows, seed)
-        table = [_row_errors(result, wanted, box_metric) for result in results]
+        table = [_row_errors(result, measured, box_metric) for result in results]
     except RegolithError as error:
         return str(error)
     return np.array(table), tuple(result.reason is None for result in results)
@@ -152,12 +152,12 @@ def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> li
     return results
 
 
-def _row_errors(result: CoarseningResult, wanted: Any, box_metric: str) -> list[float]:
+def _row_errors(result: CoarseningResult, measured: Any, box_metric: str) -> list[float]:
     """Errors of the polyhedron that the method returned, which is also what a gallery shows."""
     if box_metric == "exact":
         errors = dict(result.errors)
     else:
-        errors = relative_errors(wanted, describe(_in_unit_frame(result), LOSS_KEYS, box_metric))
+        errors = relative_errors(measured, describe(_in_unit_frame(result), LOSS_KEYS, box_metric))
     return [*[errors[key] for key in LOSS_KEYS], result.jaccard_distance]
 
 

@@ -127,7 +127,7 @@ def lmax_errors(
 
     Raises RegolithError if the particle cannot be measured or fitted.
     """
-    wanted = describe(mesh, keys)
+    measured = describe(mesh, keys)
     fit = fit_options.fit(mesh, max(degrees))
     errors = np.full((len(degrees), len(keys)), np.nan)
     for row, (coarse, fine) in enumerate(_surfaces(fit, degrees)):
@@ -136,7 +136,7 @@ def lmax_errors(
             for key, value in describe(coarse, [key for key in keys if key in EXTRAPOLATED]).items():
                 # half the edges leave a quarter of the error: a third of the step remains
                 values[key] += (values[key] - value) / 3
-            errors[row] = [values[key] / wanted[key] - 1 for key in keys]
+            errors[row] = [values[key] / measured[key] - 1 for key in keys]
     return errors
 
 

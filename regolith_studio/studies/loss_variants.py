@@ -145,12 +145,12 @@ def tradeoff_variants(
     """
     _check_factors(like, factors)
     overlap = like.weights[JACCARD] or 1.0
-    wanted = {key: like.weights[key] for key in LOSS_KEYS if like.weights[key]}
-    if not wanted:
+    descriptors = {key: like.weights[key] for key in LOSS_KEYS if like.weights[key]}
+    if not descriptors:
         raise InputError("A trade-off needs a weight above 0 on at least one descriptor.")
     alone = like.relabelled(N_("Overlap only"), weights=LossWeights.of(**{JACCARD: overlap}))
     if like.method in CONDITION_METHODS:
-        return (alone, *_condition_variants(like, overlap, wanted))
+        return (alone, *_condition_variants(like, overlap, descriptors))
     weighed = [
         like.relabelled(
             _scaled(JACCARD, factor), weights=like.weights.replaced(**{JACCARD: overlap * factor})
@@ -161,14 +161,14 @@ def tradeoff_variants(
 
 
 def _condition_variants(
-    like: LossVariant, overlap: float, wanted: Mapping[str, float]
+    like: LossVariant, overlap: float, descriptors: Mapping[str, float]
 ) -> tuple[LossVariant, ...]:
-    groups = {name: [key for key in keys if key in wanted] for name, keys in GROUPS.items()}
+    groups = {name: [key for key in keys if key in descriptors] for name, keys in GROUPS.items()}
     present = [name for name, keys in groups.items() if keys]
     rows = []
     for count in range(1, len(present) + 1):
         for chosen in combinations(present, count):
-            weights = {key: wanted[key] for name in chosen for key in groups[name]}
+            weights = {key: descriptors[key] for name in chosen for key in groups[name]}
             label = join_messages([Message(N_("Overlap")), *map(Message, chosen)], " + ")
             rows.append(like.relabelled(label, weights=LossWeights.of(**{JACCARD: overlap}, **weights)))
     return tuple(rows)

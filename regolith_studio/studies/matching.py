@@ -151,10 +151,10 @@ def match(
     comparison = _Comparison(materials, keys, weighting)
     ones = [np.ones((1, len(each.volumes))) for each in materials]
     resamples = [rng.multinomial(n, np.full(n, 1 / n), N_RESAMPLES).astype(float) for n in comparison.counts]
-    (found,), samples = comparison.forms(ones), comparison.forms(resamples)
-    shares, drawn = _nearest_shares(found), np.array([_nearest_shares(form) for form in samples])
+    (form_of_all,), samples = comparison.forms(ones), comparison.forms(resamples)
+    shares, drawn = _nearest_shares(form_of_all), np.array([_nearest_shares(form) for form in samples])
     rows = np.vstack([np.eye(len(candidates)), shares])
-    energies = np.einsum("pi,ij,pj->p", rows, found, rows)
+    energies = np.einsum("pi,ij,pj->p", rows, form_of_all, rows)
     spreads = np.einsum("pi,bij,pj->bp", rows, np.array(samples), rows)
     floors = comparison.floors(rows, rng)
     masses = [_mass_shares(each, materials[1:], weighting) for each in (shares, *drawn)]
@@ -327,7 +327,7 @@ def _mass_shares(shares: FloatArray, parts: Sequence[ComparedMaterial], weightin
     return np.asarray(masses / masses.sum())
 
 
-def _interval(resampled: FloatArray, found: float) -> tuple[float, float]:
+def _interval(resampled: FloatArray, estimate: float) -> tuple[float, float]:
     """As far as the resamples are spread; shifted, as resampling itself adds distance."""
-    low, high = np.quantile(resampled, _ENDS) - (resampled.mean() - found)
+    low, high = np.quantile(resampled, _ENDS) - (resampled.mean() - estimate)
     return float(low), float(high)

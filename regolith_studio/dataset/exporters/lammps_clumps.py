@@ -53,18 +53,18 @@ EVERY = 1000
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     bodies = pack_on_lattice(dataset, options)
-    clumps, said = [], []
+    clumps, fits = [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         # LAMMPS knows no rigid body of one sphere.
         clumps.append(fit_spheres_by(one.shape, max(2, options.n_spheres), options.max_error))
         error = sphere_fit_errors(one.shape, clumps[-1]).jaccard
-        said.append(f"  {key}: {len(clumps[-1])} spheres, mismatch {error:.3f}")
+        fits.append(f"  {key}: {len(clumps[-1])} spheres, mismatch {error:.3f}")
     return {
         "particles.data": _data(bodies, clumps).encode("ascii"),
         "bodies.txt": _bodies(dataset, bodies, options.contact.density).encode("ascii"),
         "in.particles": _input(dataset, bodies, clumps, options).encode("utf-8"),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(fits)).encode("utf-8"),
     }
 
 

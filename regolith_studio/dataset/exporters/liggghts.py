@@ -24,7 +24,7 @@ documented syntax; LIGGGHTS itself was not run. The spheres miss each polyhedron
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    files, said = {}, []
+    files, fits = {}, []
     templates: list[tuple[str, float]] = []
     lines = [f"# multi-sphere templates, SI units, coarse-graining factor {options.coarse_graining_factor:g}"]
     to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
@@ -33,7 +33,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
         name = f"spheres/{key}.txt"
         files[name] = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist()).encode("ascii")
-        said.append(f"  {key}: {len(spheres)} spheres, {sphere_fit_errors(one.shape, spheres).jaccard:.3f}")
+        fits.append(f"  {key}: {len(spheres)} spheres, {sphere_fit_errors(one.shape, spheres).jaccard:.3f}")
         moments = one.shape.mesh.inertia.diagonal()
         sizes = size_classes(one.sizes)
         for number, (diameter, share) in enumerate(zip(sizes.diameters, sizes.mass, strict=True)):
@@ -51,7 +51,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     return files | {
         "templates.in": ("\n".join(lines) + "\n").encode("ascii"),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(fits)).encode("utf-8"),
     }
 
 

@@ -40,10 +40,10 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     summed = np.array([4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() for spheres in fitted])
     volumes = np.array([shape.volume for shape in shapes])
     densities = options.contact.density * volumes / summed
-    config, said = [COLUMNS], []
+    config, fits = [COLUMNS], []
     for phase, (key, shape, spheres) in enumerate(zip(shape_names(dataset), shapes, fitted, strict=True)):
         config += _component_spheres(shape, spheres, float(bounds[phase]), phase + 1)
-        said.append(
+        fits.append(
             f"  phase {phase + 1} ({key}): {len(spheres)} spheres, "
             f"Jaccard distance {sphere_fit_errors(shape, spheres).jaccard:.3f}, summed volume "
             f"{summed[phase] / volumes[phase]:.2f} times the polyhedron's, moments of inertia up to "
@@ -54,7 +54,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         "particle_input.csv": csv_bytes(_particles(particles, bounds, densities)),
         "solids.mfx": _keywords(dataset, particles, bounds, densities, options).encode("ascii"),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(fits)).encode("utf-8"),
     }
 
 
@@ -78,8 +78,8 @@ def _inertia_error(shape: Polyhedron, spheres: FloatArray) -> float:
     mass = spheres[:, 3] ** 3 / (spheres[:, 3] ** 3).sum() * shape.volume
     squares = spheres[:, :3] ** 2
     summed = mass @ (squares.sum(axis=1, keepdims=True) - squares + 0.4 * spheres[:, 3:] ** 2)
-    wanted = np.diag(shape.mesh.inertia)
-    return float(np.abs(summed - wanted).max() / wanted.max())
+    exact = np.diag(shape.mesh.inertia)
+    return float(np.abs(summed - exact).max() / exact.max())
 
 
 def _particles(

@@ -31,7 +31,7 @@ HEADER = (
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    files, rows, said = {}, [], []
+    files, rows, fits = {}, [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
         errors = sphere_fit_errors(one.shape, spheres)
@@ -44,7 +44,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         rows.append(
             (key, len(spheres), volume, *moments, *astuple(errors), masses.centre_error, masses.inertia_error)
         )
-        said.append(
+        fits.append(
             f"  {key}: {len(spheres)} spheres, mismatch {errors.jaccard:.3f}, "
             f"volume {100 * errors.volume:+.2f} %, area {100 * errors.area:+.1f} %, "
             f"moments of inertia up to {100 * errors.inertia:.2f} % off "
@@ -53,7 +53,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     return files | {
         "fit.csv": csv_bytes([HEADER, *rows]),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(fits)).encode("utf-8"),
     }
 
 

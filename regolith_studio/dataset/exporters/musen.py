@@ -25,14 +25,14 @@ MULTISPHERE = 1
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    shapes, said = b"", []
+    shapes, fits = b"", []
     to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
         scale = float(one.sizes.quantile(0.5)) * to_metres
         shapes += _message(1, _multisphere(key, spheres * scale, one.shape.volume * scale**3))
         summed = float(4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() / one.shape.volume)
-        said.append(
+        fits.append(
             f"  {key}: {len(spheres)} spheres, Jaccard distance "
             f"{sphere_fit_errors(one.shape, spheres).jaccard:.3f}, density of its compound "
             f"{options.contact.density / summed!r} kg/m3"
@@ -40,7 +40,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     return {
         "shapes.madb": shapes,
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(fits)).encode("utf-8"),
     }
 
 

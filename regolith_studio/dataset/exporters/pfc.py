@@ -19,18 +19,18 @@ of the documented syntax; PFC itself, a commercial program, was not run. The peb
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    files, said = {}, []
+    files, fits = {}, []
     lines = ["; regolith-studio: shapes of volume 1, for PFC3D"]
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
-        said.append(f"  {key}: {len(spheres)} pebbles, {sphere_fit_errors(one.shape, spheres).jaccard:.3f}")
+        fits.append(f"  {key}: {len(spheres)} pebbles, {sphere_fit_errors(one.shape, spheres).jaccard:.3f}")
         triangles = one.shape.mesh.triangles
         files[f"meshes/{key}.stl"] = stl_bytes(triangles, f"regolith-studio unit-volume {key}")
         lines += _template(key, one.shape, spheres)
     return files | {
         "templates.dat": ("\n".join(lines) + "\n").encode("ascii"),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(fits)).encode("utf-8"),
     }
 
 

@@ -203,7 +203,7 @@ def segmentation_steps(
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch, run))
-    bodies = yield from _found_bodies(volume, settings, scratch, run, outside)
+    bodies = yield from _find_bodies(volume, settings, scratch, run, outside)
     numbers: NDArray[np.int32] = scratch.zeros(volume.shape, np.int32)
     sizes, n_parts = yield from _parted(numbers, bodies, settings, scratch, run)
     scratch.drop(bodies.numbers.array)
@@ -331,7 +331,7 @@ def grains_over_heights(
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     trials = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch))
-    bodies = yield from _found_bodies(volume, settings, scratch, outside=outside)
+    bodies = yield from _find_bodies(volume, settings, scratch, outside=outside)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     rows = []
     for each in trials:
@@ -354,7 +354,7 @@ def heights_table(counts: Sequence[GrainsAtHeight]) -> Table:
 
 
 @dataclass(frozen=True, eq=False)
-class _FoundBodies:
+class _NumberedBodies:
     numbers: SharedArray
     bodies: ConnectedComponents
     edges: FloatArray
@@ -363,13 +363,13 @@ class _FoundBodies:
     n_not_finite: int
 
 
-def _found_bodies(
+def _find_bodies(
     source: Volume,
     settings: SegmentationSettings,
     scratch: ScratchArrays,
     run: ParallelMap = map,
     outside: ScanOutside | None = None,
-) -> Generator[SegmentationProgress, None, _FoundBodies]:
+) -> Generator[SegmentationProgress, None, _NumberedBodies]:
     """Connected bodies before they are parted."""
     filled, padding = source, None
     if outside is not None:
@@ -392,7 +392,7 @@ def _found_bodies(
         if array is not source.array:
             scratch.drop(array)
     edges = np.asarray(source.voxel_size, dtype=np.float64)
-    return _FoundBodies(numbers, bodies, edges, level, seen, n_not_finite)
+    return _NumberedBodies(numbers, bodies, edges, level, seen, n_not_finite)
 
 
 def _threshold_of_grey(settings: SegmentationSettings) -> ThresholdSettings:
@@ -413,7 +413,7 @@ def _predicted(
 
 def _parted(
     labels: NDArray[np.int32],
-    bodies: _FoundBodies,
+    bodies: _NumberedBodies,
     settings: SegmentationSettings,
     scratch: ScratchArrays,
     run: ParallelMap = map,

@@ -365,8 +365,8 @@ class GrainSplitter:
 
         ``run``: applies :func:`pores_of_tile` and :func:`grains_of_tile` to tiles.
         """
-        wanted = (np.flatnonzero(self._bodies.sizes >= min_voxels) + 1).tolist()
-        left = [tile for body in wanted for tile in self._tiles_of(body)]
+        bodies = (np.flatnonzero(self._bodies.sizes >= min_voxels) + 1).tolist()
+        left = [tile for body in bodies for tile in self._tiles_of(body)]
         cut = [tile for tile in left if not tile.is_whole]
         total, done = len(left), 0
         if self._fill:

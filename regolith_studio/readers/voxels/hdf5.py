@@ -354,7 +354,7 @@ def _is_number(dataset: Any) -> bool:
 def _axes(dataset: Any, layout: StatedLayout) -> str | None:
     """A letter for each axis: vigra's tags, an attribute ``axes``, labels, the layout's, or the usual."""
     dimensions = len(dataset.shape)
-    for stated in (_tags(dataset), _font_scale(_attribute(dataset, "axes")), _labels(dataset), layout.axes):
+    for stated in (_tags(dataset), _axis_letters(_attribute(dataset, "axes")), _labels(dataset), layout.axes):
         if len(stated) == dimensions and len(set(stated)) == dimensions and set(stated) <= set("tczyx"):
             return stated
     if dimensions > 3 and dataset.shape[0] == 1:
@@ -393,7 +393,7 @@ def _parsed(dataset: Any, name: str) -> Any:
         return None
 
 
-def _font_scale(value: Any) -> str:
+def _axis_letters(value: Any) -> str:
     if isinstance(value, np.ndarray):
         value = "".join(map(str, value.ravel().tolist()))
     if isinstance(value, bytes):

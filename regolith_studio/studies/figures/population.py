@@ -188,9 +188,9 @@ def _label(study: PopulationStudy, column: int) -> str:
     return f"{row.label.lower()}{suffix}"
 
 
-def matching_figure(found: Match) -> Figure:
+def matching_figure(match: Match) -> Figure:
     """Energy distances in floors, masses of the mixture, and quantiles of the size by mass."""
-    parts = (*found.parts, found.mixture)
+    parts = (*match.parts, match.mixture)
     rows, names = np.arange(len(parts)), [as_written(part.name) for part in parts]
     figure = Figure(figsize=(11, 1.8 + 0.35 * len(parts)), layout="constrained")
     near, masses, sizes = figure.subplots(1, 3, sharey=True)
@@ -199,15 +199,15 @@ def matching_figure(found: Match) -> Figure:
         near.plot([low, high], [row, row], color="#0072b2")
         near.plot(part.energy / part.energy_floor, row, "o", color="#0072b2")
         sizes.plot(part.sizes, [row] * len(MATCHED_QUANTILES), "o-", color="#009e73")
-        if part is not found.mixture:
+        if part is not match.mixture:
             masses.barh(row, 100 * part.mass_share, color="#e69f00")
             masses.plot([100 * end for end in part.mass_interval], [row, row], color="black")
     near.axvspan(-1, 1, color="#e4e4e4")
-    near.set_xlabel(f"energy distance to {as_written(found.target)}, in floors")
+    near.set_xlabel(f"energy distance to {as_written(match.target)}, in floors")
     masses.set_xlabel("mass in the mixture, %")
-    for size in found.target_sizes:
+    for size in match.target_sizes:
         sizes.axvline(size, color="#888888", linestyle=":")
-    sizes.set(xscale="log", xlabel=f"{found.keys[0].replace('_', ' ')} (µm) of\n10, 50 and 90 % of the mass")
+    sizes.set(xscale="log", xlabel=f"{match.keys[0].replace('_', ' ')} (µm) of\n10, 50 and 90 % of the mass")
     near.set_yticks(rows, names)
     near.set_ylim(len(parts) - 0.5, -0.5)
     return figure

@@ -328,14 +328,14 @@ def write_uncertainty(budget: UncertaintyBudget, folder: Path) -> tuple[Path, ..
 
 def uncertainty_figure(budget: UncertaintyBudget) -> Figure:
     """A panel for each descriptor of the simulated polyhedra, and one for the angle where there are heaps."""
-    found, angle = budget.descriptors, budget.angle
-    n, rows = len(KEYS) + (angle is not None), len(found.steps)
+    descriptors, angle = budget.descriptors, budget.angle
+    n, rows = len(KEYS) + (angle is not None), len(descriptors.steps)
     if angle is not None:
         rows = max(rows, len(angle.effects) + 1)
     figure = Figure(figsize=(2.3 * n + 1.6, 0.3 * rows + 1.5), layout="constrained")
     panels = figure.subplots(1, n, squeeze=False)[0]
     for k, key in enumerate(KEYS):
-        _draw_shares(panels[k], found, key)
+        _draw_shares(panels[k], descriptors, key)
         if k:
             panels[k].set_yticklabels([])
     if angle is not None:
@@ -343,15 +343,15 @@ def uncertainty_figure(budget: UncertaintyBudget) -> Figure:
     return figure
 
 
-def _draw_shares(axis: Axes, found: DescriptorBudget, key: str) -> None:
+def _draw_shares(axis: Axes, descriptors: DescriptorBudget, key: str) -> None:
     """First-order shares with their intervals, in front of the total ones."""
     k = OUTPUTS.index(("polyhedra", key))
-    value, (low, high) = found.nominal[k], found.intervals[k]
+    value, (low, high) = descriptors.nominal[k], descriptors.intervals[k]
     unit = {"um^2": " µm²", "um^3": " µm³"}.get(UNITS.get(key, ""), "")
     symbol = with_subscript(CATALOGUE[key].symbol)
     axis.set_title(f"{symbol} = {value:.3g}{unit}\n{low:.3g} to {high:.3g}", fontsize=9)
-    places = np.arange(len(found.steps))
-    if (shares := found.shares) is not None:
+    places = np.arange(len(descriptors.steps))
+    if (shares := descriptors.shares) is not None:
         first, total = 100 * shares[0][k], 100 * shares[1][k]
         axis.barh(places, np.maximum(total[:, 0], 0), color=TOTAL, label="total")
         spread = np.abs(first[:, 1:] - first[:, :1]).T
@@ -362,7 +362,7 @@ def _draw_shares(axis: Axes, found: DescriptorBudget, key: str) -> None:
         if key == KEYS[0]:
             bars = axis.get_legend_handles_labels()[0]
             axis.figure.legend(handles=bars, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
-    axis.set_yticks(places, [step.label for step in found.steps], fontsize=8)
+    axis.set_yticks(places, [step.label for step in descriptors.steps], fontsize=8)
     axis.invert_yaxis()
     axis.set_xlabel("share of the variance (%)", fontsize=8)
     axis.grid(True, axis="x", alpha=0.3)
