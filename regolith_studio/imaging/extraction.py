@@ -437,8 +437,8 @@ def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface, Sca
         return cut.mask_surface(body), tuple(notes), "mask", None
     if not grey_surface.scan.follows_grey:
         notes.append(
-            f"{_OF_MASK}, its volume that of the grey values: their noise is {100 * grey_surface.scan.noise:.0f} % "
-            "of the contrast."
+            f"{_OF_MASK}, its volume that of the grey values: their noise is "
+            f"{100 * grey_surface.scan.noise:.0f} % of the contrast."
         )
     return (
         cut.placed(grey_surface.mesh, cut.wider),
