@@ -44,6 +44,8 @@ of its mesh."""
 _HOLLOW, _HOLLOW_SMOOTHING, _HOLLOW_REACH = 0.6, 1.0, 2.0
 """Share of grain below which a place is hollow, standard deviation in voxels over which it is averaged, and
 distance in voxels within which a pore is seen."""
+_WALL, _MIN_SOLID = 1.0, 0.18
+"""Depth in voxels from which on voxels tell the level, and the share of them that no pore must be near."""
 _REACH = 4.0
 """Standard deviation in voxels over which grey values of grain and surroundings are averaged."""
 _BLOCK = 2
@@ -125,6 +127,8 @@ def grain_shares(
         levels = _level_and_full(grain, level)
         if levels is None:
             break
+        if isinstance(levels, str):
+            return levels
         level, full, core = levels
         rounds_left = number + 1 < (_ROUNDS_WITH_CORE if core.any() else _ROUNDS)
         if not rounds_left or (np.abs(level - before)[shell] <= _CHANGE * level[shell]).all():
@@ -146,9 +150,9 @@ class _Grain:
     cubic: bool
 
 
-def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Floats] | None:
+def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Floats] | str | None:
     """Contrast of full grain about each voxel from a first estimate of it, which voxels are full, and what a
-    core adds in each."""
+    core adds in each; or why nothing of it is known beyond the estimate, if that is far off."""
     body, share = grain.inside > 0.0, np.asarray(grain.above / level, np.float32)
     smooth = ndimage.gaussian_filter(np.where(grain.others, np.float32(0.0), share), PRESMOOTHING)
     surface = body_contour(smooth)
@@ -158,7 +162,11 @@ def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Fl
     known = depths > 0.0
     from_pore = depth(~hollow) if hollow.any() else None
     if from_pore is not None:
+        n_deep = np.count_nonzero(depths > _WALL)
         known &= from_pore > _HOLLOW_REACH
+        # The blurred wall of a pore is nowhere as bright as solid grain: a level from it lies too low.
+        if np.count_nonzero(known & (depths > _WALL)) < _MIN_SOLID * n_deep:
+            return "pores lie within about 3 voxels of most of its surface: its volume may be off by a tenth"
     away = depth(~grain.others) if grain.others.any() else None
     if away is not None:
         # `away` is cut off at MAX_DEPTH, from where on it cannot be compared with depths.
