@@ -22,8 +22,9 @@ KEYS = ("volume", "surface_area", "sphericity", "min_diameter", "max_diameter")
 """Descriptors that intervals are stated of; the first of the table's."""
 MEAN_KEYS = (*KEYS, "aspect_ratio")
 """Descriptors that mean errors are stated of."""
-ROUND = 1.25
-"""Aspect ratio up to which a grain is nearly round: its box has no direction, so extents err more."""
+_ROUND_ASPECT, _ROUND_SPHERICITY = 1.25, 0.93
+"""Aspect ratio below and sphericity from which on a grain is nearly round: its box has no direction, so
+extents err more. Edged grains, which err like others, differ from rough balls by their sphericity."""
 SHAPES = ("round", "other")
 _CELL = re.compile(r"(\d+) voxels, noise (\d+) %")
 
@@ -31,9 +32,9 @@ _CELL = re.compile(r"(\d+) voxels, noise (\d+) %")
 def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tuple[float, float]]:
     """Between which values the true ones lie in 90 % of grains, by key; nothing where too few were found.
 
-    ``measured``: descriptors, those of :data:`KEYS` and the aspect ratio among them.
+    ``measured``: descriptors, those of :data:`MEAN_KEYS` among them.
     """
-    name = _name(measured["aspect_ratio"], scan.follows_grey)
+    name = _name(measured, scan.follows_grey)
     low, high = _errors(name, scan.across, scan.noise)[1:, : len(KEYS)]
     if not np.isfinite(low).all():
         return {}
@@ -43,7 +44,7 @@ def intervals(measured: Mapping[str, float], scan: ScanOfGrain) -> dict[str, tup
 
 
 def mean_errors(
-    aspect_ratios: Iterable[float], scans: Iterable[ScanOfGrain | None]
+    described: Iterable[Mapping[str, float]], scans: Iterable[ScanOfGrain | None]
 ) -> tuple[FloatArray, FloatArray]:
     """Mean relative errors of grains like these, and how well the mean over all of them is known.
 
@@ -52,11 +53,11 @@ def mean_errors(
     """
     errors: list[FloatArray] = []
     weights: defaultdict[tuple[str, int, int], float] = defaultdict(float)
-    for aspect_ratio, scan in zip(aspect_ratios, scans, strict=True):
+    for measured, scan in zip(described, scans, strict=True):
         errors.append(np.full(len(MEAN_KEYS), np.nan))
         if scan is None:
             continue
-        name = _name(aspect_ratio, scan.follows_grey)
+        name = _name(measured, scan.follows_grey)
         errors[-1] = _errors(name, scan.across, scan.noise)[0]
         if np.isfinite(errors[-1]).all():
             for i, j, share in _corners(name, scan.across, scan.noise):
@@ -95,9 +96,10 @@ def follows_grey(across: float, noise: float) -> bool:
     return bool(not grey > mask)
 
 
-def _name(aspect_ratio: float, grey: bool) -> str:
+def _name(measured: Mapping[str, float], grey: bool) -> str:
     """Of the table of grains of this shape and surface."""
-    return f"{'round' if aspect_ratio < ROUND else 'other'}, {'grey' if grey else 'mask'}"
+    is_round = measured["aspect_ratio"] < _ROUND_ASPECT and measured["sphericity"] >= _ROUND_SPHERICITY
+    return f"{'round' if is_round else 'other'}, {'grey' if grey else 'mask'}"
 
 
 def _errors(name: str, across: float, noise: float) -> FloatArray:

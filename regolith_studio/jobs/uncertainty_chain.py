@@ -304,7 +304,7 @@ class GrainSample:
         """Of each grain and key, 0 where none is stated, and their standard deviation by key."""
         places = [MEAN_KEYS.index(key) for key in KEYS]
         scans = [particle.scan for particle in self.particles]
-        errors, deviation = mean_errors([each["aspect_ratio"] for each in self.descriptors], scans)
+        errors, deviation = mean_errors(self.descriptors, scans)
         return np.nan_to_num(errors[:, places]), deviation[places]
 
     @property

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tifffile
+from scipy import ndimage
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.particles import read_mesh
@@ -229,8 +230,6 @@ def test_that_a_wrong_suffix_is_told(stack) -> None:
 
 def balls(n: int, grey: bool) -> np.ndarray:
     """A grid of touching balls, each with its number, or as blurred noisy greys."""
-    from scipy import ndimage
-
     z, y, x = np.mgrid[:48, :48, :48]
     step = 48 // n
     near = (x % step - step / 2) ** 2 + (y % step - step / 2) ** 2 + (z % step - step / 2) ** 2 < (
@@ -250,6 +249,8 @@ def test_that_labels_and_greys_are_told_apart() -> None:
     assert guess_kind(balls(4, grey=False).astype(np.float32)) == "labels"
     assert guess_kind(balls(4, grey=True) / 7.0) == "grey"
     assert guess_kind(np.zeros((4, 4, 4), np.uint8)) == "grey"
+    without_noise = 1000 + 4000 * ndimage.gaussian_filter((balls(2, grey=False) > 0).astype(float), 0.8)
+    assert guess_kind(np.pad(without_noise, 24, constant_values=1000).astype(np.uint16)) == "grey"
 
 
 def test_that_labels_written_as_floats_become_whole_numbers(tmp_path) -> None:

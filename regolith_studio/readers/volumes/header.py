@@ -191,8 +191,9 @@ def guess_kind(slices: NDArray[Any]) -> Kind:
 
     Labels are whole numbers, constant over wide areas, and each of them is in few
     pieces: a mask or a map of phases has many pieces of one value and is grey (to be split). So is
-    a map of few values with no 0, which has a number for what is between the grains, too. Negative
-    values are greys unless most values are 0; if they are labels, reading them is refused.
+    a map of few values with no 0, which has a number for what is between the grains, too; of more values
+    with no 0, as in a scan without noise, the most frequent one is between the grains. Negative values are
+    greys unless most values are 0; if they are labels, reading them is refused.
 
     ``slices``: a few slices of a volume, shape (k, ny, nx).
     """
@@ -200,8 +201,11 @@ def guess_kind(slices: NDArray[Any]) -> Kind:
         return "grey"
     if not slices.any() or (slices.dtype.kind in "if" and slices.min() < 0 and not _mostly_zero(slices)):
         return "grey"
-    if slices.all() and len(np.unique(slices)) <= MAX_CLASSES:
-        return "grey"
+    if slices.all():
+        values, counts = np.unique(slices, return_counts=True)
+        if len(values) <= MAX_CLASSES:
+            return "grey"
+        slices = np.where(slices == values[counts.argmax()], slices.dtype.type(0), slices)
     left, right = slices[:, :, :-1], slices[:, :, 1:]
     inside = (left != 0) & (right != 0)
     if not inside.any() or (left == right)[inside].mean() < MIN_EQUAL_NEIGHBOURS:
