@@ -148,6 +148,7 @@ class ResumableEngine(Protocol):
 
 MASS = np.pi / 6
 """Of a particle of mean diameter, where that and the density are 1."""
+# Settled fillings have 0.1 to 0.2 % of deep contacts; 1 % hide less than 0.3 % of the volume.
 DEEP_OVERLAP, MAX_DEEP_CONTACTS = 0.02, 0.01
 """Overlap in mean diameters above which a contact is deep, and maximum accepted share of these at rest.
 The share does not depend on the number of particles; docs/repose.md says why these limits."""

@@ -389,6 +389,7 @@ class GrainSplitter:
                 self._write(grains)
                 done += 1
                 yield done, total
+        # After all tiles: what one leaves, the next may claim.
         for tile in cut:
             self._give_away_rest(tile)
 

@@ -203,6 +203,7 @@ class DaskRunner:
         handle = _DaskHandle(listener)
         with self._lock:
             self._open.add(handle)
+        # Not pure: Dask would give two equal jobs one result, and cancel both with one.
         handle.future = self._client.submit(_run_whole, job, pure=False)
         handle.future.add_done_callback(lambda future: self._finish(handle, future))
         return handle

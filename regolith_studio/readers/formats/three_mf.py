@@ -125,6 +125,7 @@ class _Package:
 
 
 def _xml(data: bytes) -> Element:
+    # Entities may unfold to any size.
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
         raise FileError("is not a valid 3MF: its XML defines entities.")
     return ElementTree.fromstring(data)
@@ -183,6 +184,7 @@ def _place(
         package.faces += len(faces)
         if package.faces > MAX_FACES:
             raise FileError(f"has more than {MAX_FACES:,} faces, which is more than can be read.")
+        # A placement that mirrors turns faces inside out.
         faces = faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else faces
         parts.append((points @ matrix[:3, :3].T + matrix[:3, 3], faces))
     for components in _children(thing, "components"):

@@ -202,6 +202,7 @@ def _image(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 def _axes(image: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
     """A letter for each axis, and the unit that each states."""
+    # Axes are plain names in NGFF 0.3.
     entries = [each if isinstance(each, dict) else {"name": each} for each in _list(image.get("axes"))]
     letters = "".join(str(each.get("name", "?"))[:9] for each in entries).lower()
     if (
@@ -230,6 +231,7 @@ def _levels(
         raise FileError("is packed in chunks of more than 0.5 GiB; save it with smaller ones.")
     edges = dict(zip(axes, shape, strict=True))
     factors = np.array([factor.get(axis, 1.0) for axis in axes])
+    # NGFF: the transformations of the whole image apply after those of a level.
     scale = tuple((_scale(entry, len(axes)) * _scale(image, len(axes)) * factors).tolist())
     channels = edges.get("c", 1)
     if edges.get("t", 1) != 1 or channels > MAX_CHANNELS:

@@ -33,6 +33,8 @@ class LammpsSettings:
 
     spheres: int = setting(12, N_("Spheres per particle"), minimum=1, maximum=64)
     max_error: float = setting(0.0, N_("Error of the spheres"), minimum=0.0, maximum=0.9)
+    # With half of it the deepest overlap of four fillings was 2.1 % of the diameter, now 1.2 %, for 1.4 times
+    # the steps.
     max_stiffness: float = setting(4e4, N_("Young's modulus / ρgd"), minimum=0.0, maximum=1e12)
     step_share: float = setting(0.15, N_("Step, in Rayleigh's time"), minimum=0.01, maximum=0.5)
     rest: float = setting(25.0, N_("Time at rest"), minimum=1.0, maximum=1e5)
