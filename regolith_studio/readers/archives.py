@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any
+from zipfile import ZIP_STORED
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.file_names import natural_key
@@ -72,7 +73,11 @@ class ArchiveMember:
 
 @dataclass(frozen=True)
 class ArchiveContent:
-    """Meshes of an archive in the order of their names, and sentences about members that are refused."""
+    """Meshes of an archive, and sentences about members that are refused.
+
+    They are in the order of their names, those of a compressed archive in an archive as they lie in it: that
+    one can only be unpacked from its beginning on, which any other order would do once for each mesh.
+    """
 
     members: tuple[ArchiveMember, ...]
     problems: tuple[tuple[str, str], ...]
@@ -103,9 +108,7 @@ def archive_content(path: Path) -> ArchiveContent:
 def _content(path: Path, _size: int, _time: int) -> ArchiveContent:
     problems: list[tuple[str, str]] = []
     left = [MAX_ARCHIVES]
-    members = list(_walk(path, (), "", problems, left))
-    members.sort(key=lambda each: [natural_key(part) for part in each.name.split("/")])
-    return ArchiveContent(tuple(members), tuple(problems))
+    return ArchiveContent(tuple(_walk(path, (), "", problems, left)), tuple(problems))
 
 
 def _walk(
@@ -115,7 +118,7 @@ def _walk(
     shown = str(path / prefix)
     names, places, refused = _listed(path, chain, prefix)
     problems += [(shown, f"{display_name(path / prefix)} {sentence}") for sentence in refused]
-    for name, place in zip(names, places, strict=True):
+    for name, place in _in_order(names, places, all(each.method == ZIP_STORED for each in chain)):
         inner = (*chain, place)
         if not is_archive(Path(name)):
             yield ArchiveMember(path, inner, prefix + name)
@@ -128,6 +131,13 @@ def _walk(
             yield from _walk(path, inner, f"{prefix}{name}/", problems, left)
         except FileError as error:
             problems.append((f"{path / prefix / name}", str(error)))
+
+
+def _in_order(names: list[str], places: list[Place], by_name: bool) -> list[tuple[str, Place]]:
+    members = list(zip(names, places, strict=True))
+    if by_name:
+        return sorted(members, key=lambda member: [natural_key(part) for part in member[0].split("/")])
+    return sorted(members, key=lambda member: member[1].offset)
 
 
 def _listed(path: Path, chain: tuple[Place, ...], prefix: str) -> tuple[list[str], list[Place], list[str]]:

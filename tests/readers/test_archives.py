@@ -62,9 +62,9 @@ NAMES = [
     ("75m", "75m_p1"),
     ("75m", "75m_p2"),
     ("75m", "p10"),
+    ("deep/300p/all", "deep_300p_all_p1"),
     ("deep/300p/again", "deep_300p_again_p1"),
     ("deep/300p/again", "deep_300p_again_p2"),
-    ("deep/300p/all", "deep_300p_all_p1"),
 ]
 
 
@@ -91,6 +91,17 @@ def test_that_stored_archives_in_archives_and_folders_of_them_are_read(tmp_path,
     (tmp_path / "b.stl").write_bytes(cube.binary_stl())
     groups = [each.group for each in read_particles([tmp_path])]
     assert groups == [f"{tmp_path.name}/a/300p", tmp_path.name]
+
+
+@pytest.mark.parametrize(
+    ("method", "names"),
+    [(zipfile.ZIP_DEFLATED, ["p3", "p1", "p2"]), (zipfile.ZIP_STORED, ["p1", "p2", "p3"])],
+)
+def test_that_a_compressed_archive_in_an_archive_is_unpacked_once(method, names, tmp_path, cube):
+    inner = packed({f"{name}.stl": cube.binary_stl() for name in ("p3", "p1", "p2")})
+    (tmp_path / "lib.zip").write_bytes(packed({"75m.zip": inner, "300p/p0.stl": cube.binary_stl()}, method))
+    files = find_files([tmp_path / "lib.zip"], [])
+    assert [file.path.stem for file in files] == [*names, "p0"]
 
 
 def test_that_one_bad_member_is_one_sentence(tmp_path, cube):
