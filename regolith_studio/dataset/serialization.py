@@ -36,15 +36,15 @@ def shape_bytes(shape: Polyhedron, index: int, count: int) -> tuple[bytes, ...]:
     """STL of a shape, one of `count`, and of each part of a compound."""
     parts = shape.part_meshes if isinstance(shape, ConvexCompound) else ()
     return tuple(
-        stl_bytes(_stored_triangles(mesh), mesh_header(index, count, part))
+        stl_bytes(stored_triangles(mesh), mesh_header(index, count, part))
         for part, mesh in enumerate((shape.mesh, *parts))
     )
 
 
-def _stored_triangles(mesh: Mesh) -> FloatArray:
+def stored_triangles(mesh: Mesh) -> FloatArray:
     """Without those with two corners that float32 does not tell apart: the surface stays closed.
 
-    Where facets of two parts nearly meet, a union has edges that short.
+    Where facets of two parts, or four planes, nearly meet, there are edges that short.
     """
     a, b, c = np.moveaxis(mesh.triangles.astype(np.float32), 1, 0)
     kept = (a != b).any(axis=1) & (b != c).any(axis=1) & (c != a).any(axis=1)
@@ -188,7 +188,7 @@ def _counts(shape: Polyhedron) -> dict[str, int]:
     if isinstance(shape, ConvexPolyhedron):
         n_vertices, n_triangles = shape.n_vertices, shape.n_triangles
     else:
-        corners = _stored_triangles(shape.mesh).reshape(-1, 3).astype(np.float32)
+        corners = stored_triangles(shape.mesh).reshape(-1, 3).astype(np.float32)
         n_vertices, n_triangles = len(np.unique(corners, axis=0)), len(corners) // 3
     return {"n_facets": shape.n_facets, "n_vertices": n_vertices, "n_triangles": n_triangles}
 

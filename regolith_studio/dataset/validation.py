@@ -21,7 +21,7 @@ from regolith_studio.dataset.schema import (
     MeshRecord,
     RepresentativeRecord,
 )
-from regolith_studio.dataset.serialization import dataset_of, shape_of, union_properties
+from regolith_studio.dataset.serialization import dataset_of, shape_of, stored_triangles, union_properties
 from regolith_studio.errors import DatasetError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
@@ -139,8 +139,8 @@ def _file_problems(
         problems += _count_problems(record, counts, "half-spaces have")
         if planes is not None and len(planes.offsets) != shape.n_facets:
             problems.append(f"{len(planes.offsets) - shape.n_facets} half-spaces bound no facet.")
-        if len(mesh.faces) != shape.n_triangles:
-            problems.append(f"the mesh has {len(mesh.faces)} triangles, its facets need {shape.n_triangles}.")
+        if len(mesh.faces) != (needed := len(stored_triangles(shape.mesh))):
+            problems.append(f"the mesh has {len(mesh.faces)} triangles, its facets need {needed}.")
     return [f"{file}: {problem}" for problem in problems]
 
 

@@ -1,6 +1,7 @@
 """The dataset folder: what is written is read back exactly, and nothing foreign is overwritten."""
 
 import hashlib
+import itertools
 import json
 from collections.abc import Iterator
 from dataclasses import replace
@@ -24,8 +25,11 @@ from regolith_studio.dataset.folder_io import (
 from regolith_studio.dataset.schema import CoarseningRecord
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.particle import Particle
 
-from .example import entry
+from .example import Coarse, entry
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -113,6 +117,17 @@ def test_that_a_stranger_reads_closed_convex_meshes_of_unit_volume(tmp_path: Pat
 
 def test_that_a_written_dataset_has_no_problems(tmp_path: Path, make_dataset) -> None:
     assert validate_dataset(write_dataset(tmp_path / "set", make_dataset())) == []
+
+
+def test_that_an_edge_shorter_than_float32_resolves_is_no_problem(tmp_path: Path) -> None:
+    octahedron = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    offsets = np.ones(8)
+    offsets[0] += 1e-9
+    solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(octahedron, offsets))
+    assert solid.n_vertices > 6
+    particle = Particle("octahedron", solid.mesh)
+    folder = write_dataset(tmp_path / "set", build_dataset([(particle, Coarse(solid, np.zeros(3)))]))
+    assert not validate_dataset(folder)
 
 
 def test_that_an_older_dataset_is_replaced_as_a_whole(tmp_path: Path, make_dataset) -> None:
