@@ -75,12 +75,10 @@ def rebuilt(half_spaces: HalfSpaces) -> ConvexPolyhedron:
     solid = ConvexPolyhedron.from_half_spaces(half_spaces)
     # Normalising a unit vector may change its last bit; two or three times and it does not any more.
     for _ in range(10):
-        again = ConvexPolyhedron.from_half_spaces(
-            HalfSpaces(solid.half_spaces.normals, solid.half_spaces.offsets)
-        )
-        if np.array_equal(again.half_spaces.normals, solid.half_spaces.normals):
-            return again
-        solid = again
+        if np.array_equal(solid.half_spaces.normals, half_spaces.normals):
+            break
+        half_spaces = solid.half_spaces
+        solid = ConvexPolyhedron.from_half_spaces(half_spaces)
     return solid
 
 

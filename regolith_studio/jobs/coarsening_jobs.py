@@ -167,7 +167,7 @@ def coarsen_particle(
         fit = (fit or request.fit_options.fit(mesh, max(request.l_max, FIT_DEGREE))).truncated(request.l_max)
         mesh, notes = reconstruct(fit, request.l_max, level=request.level), notes + fit.warnings
         coefficients = fit.coefficients
-    coarsened = yield from _run_coarsening(mesh, request)
+    coarsened = yield from _run_coarsening(mesh, request, shown=False)
     seconds = time.perf_counter() - begun
     return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)
 
@@ -224,7 +224,8 @@ def _measured_step(step: CoarseningProgress, target: Target, weights: LossWeight
     return replace(step, achieved=achieved, errors=errors, jaccard_distance=distance)
 
 
-def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, None, Any]:
+def _run_coarsening(mesh: Mesh, request: CoarseningRequest, shown: bool = True) -> Generator[Step, None, Any]:
+    """Coarsen `mesh`; the polyhedra of the steps are measured and passed on only where they are `shown`."""
     common: dict[str, Any] = {
         "method": request.method,
         "weights": request.weights,
@@ -245,9 +246,10 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, N
         if isinstance(step, Trial):
             trials = f"{step.n_facets} facets: {100 * step.largest_error:.2g} %"
             continue
-        if step.polyhedron is not None and time.monotonic() >= due:
-            step = _measured_step(step, _target(mesh), request.weights)
-            due = time.monotonic() + MEASURED_EVERY
-        recent.append(step)
-        yield Partial(replace(step, recent=tuple(recent)))
+        if shown:
+            if step.polyhedron is not None and time.monotonic() >= due:
+                step = _measured_step(step, _target(mesh), request.weights)
+                due = time.monotonic() + MEASURED_EVERY
+            recent.append(step)
+            yield Partial(replace(step, recent=tuple(recent)))
         yield Progress(step.step, step.steps, trials)
