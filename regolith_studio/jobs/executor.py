@@ -43,7 +43,7 @@ class Executor:
     def __init__(self, workers: int = 1, runner: Runner | None = None) -> None:
         self.workers = workers or cores()
         self._runner = runner
-        self._check_shared: Callable[[Path, Path], None] | None = None
+        self._check_shared: Callable[[Path, Path | None], None] | None = None
         self.dashboard = ""
         """Address of a cluster's status page, if there is one."""
 
@@ -112,10 +112,11 @@ class Executor:
             return None
         return 1 if self._check_shared else max(1, self.workers // max(1, n_jobs))
 
-    def check_shared(self, path: Path, folder: Path) -> None:
+    def check_shared(self, path: Path, folder: Path | None = None) -> None:
         """Check that all workers find a file or folder, and `folder`, which is made, under these paths."""
         if self._check_shared is not None:
-            folder.mkdir(parents=True, exist_ok=True)
+            if folder is not None:
+                folder.mkdir(parents=True, exist_ok=True)
             self._check_shared(path.absolute(), folder)
 
     def _open_runner(self) -> Runner:

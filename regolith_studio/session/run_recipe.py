@@ -10,7 +10,7 @@ import contextlib
 import dataclasses
 import hashlib
 import shutil
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -32,6 +32,7 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, study_coarsening, study_lmax
 from regolith_studio.messages import N_
+from regolith_studio.readers.archives import archive_of
 from regolith_studio.readers.particles import left_out
 from regolith_studio.session.batch.inputs import BatchInputs, FileInput
 from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
@@ -134,6 +135,8 @@ def run_recipe(
         run = RecipeRun(folder, recipe, choices, BatchInputs.of(recipe, base, prepared), resume=resume)
         run.notes = _notes_on_files(recipe, base, prepared)
         _check_inputs(run)
+        for path in _first_files(recipe, base):
+            executor.check_shared(path)
         batch = _open_batch(run, resume, chunk)
         with batch.checkpoint:
             if (ended := batch.checkpoint.note(ENDED)) is not None:
@@ -171,6 +174,13 @@ def _check_inputs(run: RecipeRun) -> None:
     count = len(run.items.members)
     _check_size(run.recipe, run.items.largest_group if run.recipe.outputs.dataset_by_group else count)
     check_dataset_request(run.recipe, count)
+
+
+def _first_files(recipe: Recipe, base: Path) -> Iterable[Path]:
+    """The first file of each folder that workers read from, or the archive that it is in."""
+    paths = [base / name for entry in recipe.openings for name in entry.files]
+    files = [archive_of(path) or path for path in paths]
+    return {path.parent: path for path in reversed(files)}.values()
 
 
 def _check_size(recipe: Recipe, n_particles: int) -> None:

@@ -11,12 +11,16 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
 
 from regolith_studio.errors import InputError, MissingRequirement
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.sample_volumes import sample_file
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.events import Finished, Job, Progress
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import extract_measured
@@ -238,10 +242,40 @@ def test_that_workers_that_do_not_see_the_volume_or_the_output_are_one_sentence(
 
 @pytest.mark.slow
 def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alone: dict[str, bytes]) -> None:
+    library = archive(tmp_path / "JSC.zip")
+    options = {"target": "particle", "method": "quadric", "n_facets": 12}
+    outputs = {"dataset_by_group": True, "meshes": False, "summary": False}
+    recipe = recipe_of(inputs=[str(library)], population=None, outputs=outputs, **options)
+
+    def dataset(place: str, executor: Executor | int) -> dict[str, bytes]:
+        for _ in run_recipe(recipe, tmp_path, tmp_path / place / "out", executor, chunk=2):
+            pass
+        return digests(tmp_path / place / "out")
+
     with closing(Executor.on_cluster(workers=2)) as executor:
         assert executor.workers == 2
         assert executor.dashboard.startswith("http://127.0.0.1:")
         assert done(tmp_path / "out", executor) == alone
+        assert dataset("cluster", executor) == (made := dataset("alone", 1))
+        assert {"dataset/75m/dataset.json", "dataset/300p/dataset.json", "failed.csv"} <= made.keys()
+        client = executor._runner._client  # type: ignore[union-attr]
+        client.run = lambda *_: {"tcp://10.0.0.2:4001": (None, "")}
+        with pytest.raises(MissingRequirement, match=r"4001 does not find .*JSC\.zip"):
+            dataset("elsewhere", executor)
+
+
+def archive(path: Path) -> Path:
+    """Two fractions, one of them an archive, of three ellipsoids each, and a member that is damaged."""
+    sphere = icosphere(2)
+    with ZipFile(path, "w") as library, ZipFile(path.with_name("300p.zip"), "w", ZIP_DEFLATED) as inner:
+        for number, axes in enumerate([(3.0, 2.0, 1.5), (2.0, 2.0, 1.0), (4.0, 3.0, 2.0)]):
+            stl = stl_bytes(Mesh(sphere.vertices * axes, sphere.faces).triangles, "test")
+            library.writestr(f"75m/p{number}.stl", stl)
+            inner.writestr(f"p{number}.stl", stl)
+        inner.close()
+        library.writestr("75m/p3.stl", stl[:200])
+        library.write(path.with_name("300p.zip"), "300p.zip")
+    return path
 
 
 @pytest.mark.slow

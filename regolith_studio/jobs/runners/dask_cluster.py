@@ -208,22 +208,24 @@ class DaskRunner:
         handle.future.add_done_callback(lambda future: self._finish(handle, future))
         return handle
 
-    def check_shared(self, path: Path, folder: Path) -> None:
+    def check_shared(self, path: Path, folder: Path | None) -> None:
         """Check that each worker finds a file or folder, and one for temporary files, under these paths."""
-        probe = folder / "probe"
-        probe.write_text(key := uuid.uuid4().hex)
-        for worker, (size, seen) in self._client.run(_size_and_text, str(path), str(probe)).items():
+        probe, key = folder and folder / "probe", ""
+        if probe is not None:
+            probe.write_text(key := uuid.uuid4().hex)
+        for worker, (size, seen) in self._client.run(_size_and_text, str(path), str(probe or "")).items():
             if size != _size_of(path):
                 raise MissingRequirement(
                     f"The worker {worker} does not find {path}, or another file is there; workers read it "
                     "themselves, from a place that all share."
                 )
-            if seen != key:
+            if folder is not None and seen != key:
                 raise MissingRequirement(
                     f"The worker {worker} does not see the folder {folder.parent}, where temporary files are "
                     "written; write the output to a place that all workers share."
                 )
-        probe.unlink()
+        if probe is not None:
+            probe.unlink()
 
     def close(self) -> None:
         """Cancel what runs and disconnect; a cluster that was started here ends."""
