@@ -72,4 +72,4 @@ def _draw_and_report(sending: "Connection", draw: Callable[..., None], arguments
 def _draw(particle: "Particle", fit: "Mesh", coarse: "CoarseningResult", l_max: int, path: Path) -> None:
     from regolith_studio.scene.figure import three_views, view_titles
 
-    three_views(particle.mesh, fit, coarse, view_titles(particle.title, l_max, coarse), path)
+    three_views(particle.mesh, fit, coarse, view_titles(particle.name, l_max, coarse), path)

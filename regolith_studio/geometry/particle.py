@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, TypeVar
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import locate_defects
-from regolith_studio.messages import N_
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.repair import Repair
@@ -85,11 +84,6 @@ class Particle:
     def is_synthetic(self) -> bool:
         """Whether it is a shipped one, which no scan has measured."""
         return self.source is not None and self.source.path.startswith("sample:")
-
-    @property
-    def title(self) -> str:
-        """What it is called above a picture of it."""
-        return N_("Synthetic particle") if self.is_synthetic else N_("Particle")
 
 
 def solid_of(particle: Particle | Solid) -> Mesh | Solid:

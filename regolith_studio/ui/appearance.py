@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QFormLayout, QMainWindow, QSpinBox, 
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.layout import STANDARD_SIZES, GrowingDialog, dialog_buttons, named, vbox
+from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, named, restore_borders, vbox
 from regolith_studio.ui.theme import (
     LARGEST,
     SMALLEST,
@@ -19,7 +19,6 @@ from regolith_studio.ui.theme import (
     apply_font_size,
     choose_font_size,
     choose_theme,
-    font_size,
 )
 from regolith_studio.ui.translation import LANGUAGES, SETTING, SYSTEM, tr
 from regolith_studio.ui.widgets.fields import ChoiceBox
@@ -30,7 +29,6 @@ STANDARD_SIZE = (1480, 900)
 """Of a new window in pixels, where the screen is large enough."""
 FRAME = QSize(8, 40)
 """Pixels that window managers add to the size of a window for its title and borders, at most."""
-EQUAL = 1000
 NO_LIMIT = (1 << 24) - 1
 """Qt's maximum height of a widget that has none."""
 
@@ -76,12 +74,6 @@ class WindowState:
     def _kept(self) -> dict[str, Any]:
         kept = self._preferences.window.get(LAYOUT)
         return dict(kept) if isinstance(kept, dict) else {}
-
-
-def restore_borders(window: QWidget) -> None:
-    """Give the borders between the parts of all pages the places of a new window."""
-    for splitter in window.findChildren(QSplitter):
-        splitter.setSizes(splitter.property(STANDARD_SIZES) or [EQUAL] * splitter.count())
 
 
 def show_bars(window: QMainWindow, others: Sequence[QWidget], *, shown: bool) -> None:
@@ -189,14 +181,12 @@ class Appearance(QObject):
 
     def choose(self, **changes: object) -> None:
         """Keep settings by their names; another theme and font size are seen at once."""
-        before, size = self._seen(), font_size()
+        before = self._seen()
         self._preferences.window = self._preferences.window | changes
         self._preferences.save()
         self._take()
         if self._seen() != before:  # a style takes a second to reach all widgets
             self._apply()
-        if font_size() < size:  # parts that large letters have widened stay so by themselves
-            restore_borders(self._window)
 
     def _seen(self) -> tuple[object, object]:
         return self._preferences.window.get("theme", "system"), self._preferences.window.get(FONT_SIZE)

@@ -179,6 +179,14 @@ def splitter(direction: Qt.Orientation, parts: Sequence[QWidget], sizes: Sequenc
     return made
 
 
+def restore_borders(root: QWidget) -> None:
+    """Give the borders between the parts in a widget the places of a new window."""
+    for layout in root.findChildren(QLayout):
+        layout.invalidate()  # its minimum width may still be that of another font
+    for splitter in root.findChildren(QSplitter):
+        splitter.setSizes(splitter.property(STANDARD_SIZES) or [1000] * splitter.count())
+
+
 def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
     """Parts in a row with movable borders; the one numbered `stretch` takes what room is left."""
     made = splitter(Qt.Orientation.Horizontal, parts, sizes)

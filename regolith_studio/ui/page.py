@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtGui import QKeySequence
+from PySide6.QtCore import QRegularExpression, QSize, Qt, Signal
+from PySide6.QtGui import QKeySequence, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QButtonGroup,
@@ -28,8 +28,16 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.keyboard import with_keys
-from regolith_studio.ui.layout import hbox, scrolled
-from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, icon, pass_theme, restyle
+from regolith_studio.ui.layout import hbox, restore_borders, scrolled
+from regolith_studio.ui.theme import (
+    Theme,
+    current_theme,
+    ensure_polished,
+    font_size,
+    icon,
+    pass_theme,
+    restyle,
+)
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -64,6 +72,10 @@ class ActionSpec:
     bar: str = ""
     label: str = ""
     menu: str = PAGE_MENU
+
+
+MIN_VIEW = 8, 3
+"""Parts of width and height of a window that a 3-D view has at least."""
 
 
 class PageWidget(QWidget):
@@ -108,6 +120,13 @@ class PageWidget(QWidget):
 
     def on_close(self) -> None:
         """Called when the window closes: release graphics memory, stop timers."""
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Let the page scroll before its 3-D views become small."""
+        super().resizeEvent(event)
+        window = self.window()
+        for frame in self.findChildren(QFrame, QRegularExpression("^view_")):
+            frame.setMinimumSize(window.width() // MIN_VIEW[0], window.height() // MIN_VIEW[1])
 
 
 @dataclass(frozen=True)
@@ -218,6 +237,10 @@ class Page:
 
 
 ICON_SIZE = QSize(24, 24)
+TITLE_MARGIN = 18
+"""Pixels above and below icon and title of a page."""
+MIN_CHARACTERS = 110
+"""Width of a window in characters from which on the titles of its pages are shown."""
 
 
 class Sidebar(QFrame):
@@ -253,6 +276,15 @@ class Sidebar(QFrame):
         if focused:
             self.buttons[key].setFocus(Qt.FocusReason.OtherFocusReason)
 
+    def fit_into(self, room: QSize) -> None:
+        """Show the titles below the icons where a window has room for them; they are in the tool tips too."""
+        metrics = self.fontMetrics()
+        height = len(self.buttons) * (ICON_SIZE.height() + metrics.height() + TITLE_MARGIN)
+        shown = room.width() >= MIN_CHARACTERS * metrics.averageCharWidth() and room.height() >= height
+        style = Qt.ToolButtonStyle.ToolButtonTextUnderIcon if shown else Qt.ToolButtonStyle.ToolButtonIconOnly
+        for button in self.buttons.values():
+            button.setToolButtonStyle(style)
+
     def set_theme(self, theme: Theme) -> None:
         for key, page in self._pages.items():
             self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
@@ -263,8 +295,8 @@ class Sidebar(QFrame):
         button.setObjectName(f"page_{page.key}")
         button.setText(tr(page.title))
         button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
-        button.setToolTip(with_keys(tr(page.tip), QKeySequence(f"Alt+{number}")))
-        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
+        tip = f"{tr(page.title)}: {tr(page.tip)}"
+        button.setToolTip(with_keys(tip, QKeySequence(f"Alt+{number}")))
         button.setIconSize(ICON_SIZE)
         button.setCheckable(True)
         button.setAutoRaise(True)
@@ -308,6 +340,7 @@ class PageStack(QWidget):
         self._context_of = context_of
         self._current = ""
         self._unthemed: set[str] = set()
+        self._font_sizes: dict[str, float] = {}
         self._stack = QStackedWidget()
         self._scroll_areas: dict[str, ScrollablePage] = {}
         self._bar = Sidebar(self.pages)
@@ -320,6 +353,10 @@ class PageStack(QWidget):
     def current(self) -> str:
         return self._current
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._bar.fit_into(event.size())
+
     def go(self, key: str) -> PageWidget:
         """Show a page; at the first visit it is built."""
         if key not in self.widgets:
@@ -330,6 +367,7 @@ class PageStack(QWidget):
             self._apply_theme(key)
             self._current = key
             self._stack.setCurrentWidget(self._scroll_areas[key])
+            self._restore_borders(key)
             self._bar.set_current(key)
             self._contexts[key].bindings.resume()
             widget.on_show()
@@ -358,6 +396,7 @@ class PageStack(QWidget):
         self._unthemed = set(self.widgets)
         if self._current:
             self._apply_theme(self._current)
+            self._restore_borders(self._current)
 
     @property
     def scroll_areas(self) -> tuple[ScrollablePage, ...]:
@@ -385,7 +424,7 @@ class PageStack(QWidget):
         self._stack.addWidget(self._scroll_areas[key])
         ensure_polished(widget)
         pass_theme(widget, current_theme())
-        self.widgets[key] = widget
+        self.widgets[key], self._font_sizes[key] = widget, font_size()
         self.built.emit(key)
 
     def _apply_theme(self, key: str) -> None:
@@ -393,6 +432,12 @@ class PageStack(QWidget):
             self._unthemed.remove(key)
             restyle(self._scroll_areas[key])
             pass_theme(self.widgets[key], current_theme())
+
+    def _restore_borders(self, key: str) -> None:
+        """Give borders their places back in a smaller font: parts that a large one has widened stay so."""
+        if font_size() < self._font_sizes[key]:
+            restore_borders(self.widgets[key])
+        self._font_sizes[key] = font_size()
 
     def _hide_current(self) -> None:
         if self._current:

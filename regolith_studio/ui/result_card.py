@@ -15,8 +15,8 @@ from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.layout import named
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.translation import number_text, tr
-from regolith_studio.ui.widgets.labels import FixedHeightText, hint_label
+from regolith_studio.ui.translation import Markup, number_text, tr
+from regolith_studio.ui.widgets.labels import FixedHeightText, hint_label, with_subscripts
 
 MAGNIFICATION = 1.75
 """Size of the figures in units of the widget's font."""
@@ -192,7 +192,8 @@ class ResultView(QFrame):
         self._describe()
 
     def _describe(self) -> None:
-        self.sentence.setText(self._record.sentences(self._progress))
+        words = with_subscripts(self._record.sentences(self._progress))
+        self.sentence.setText(Markup(words.replace("\n", "<br>")) if isinstance(words, Markup) else words)
         self._name_button()
 
     def set_start(self, text: str) -> None:

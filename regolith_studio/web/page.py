@@ -165,7 +165,7 @@ class ThreeViewPage:
         results, body = self._session.results, self._session.results.polyhedron
         degree = results.surface_l_max if results.surface else self._session.choices.l_max
         entry = self._session.selected
-        title = entry.particle.title if entry else "Particle"
+        title = entry.particle.name if entry else "Particle"
         if isinstance(body, ConvexPolyhedron):
             return list(map(str, view_titles(title, degree, body)))
         parts = f"Compound of {body.n_parts} convex parts" if body else "Polyhedron"

@@ -964,8 +964,8 @@
         <translation>Änderung jedes Fehlers, wenn ein Gewicht der Verlustfunktion geändert wird.</translation>
     </message>
     <message>
-        <source>Change shapes where a format needs it</source>
-        <translation>Formen ändern, wo ein Format es braucht</translation>
+        <source>Change shapes where needed</source>
+        <translation>Formen ändern, wo nötig</translation>
     </message>
     <message>
         <source>Changed from {preset}.</source>
@@ -1712,10 +1712,6 @@
         <translation>Über Körner ziehen, um ihre Voxel freizugeben.</translation>
     </message>
     <message>
-        <source>Draw particles</source>
-        <translation>Partikel ziehen</translation>
-    </message>
-    <message>
         <source>Draw particles: their distributions appear here, over those of the measured ones.</source>
         <translation>Ziehen Sie Partikel: ihre Verteilungen erscheinen hier, über denen der gemessenen.</translation>
     </message>
@@ -1766,6 +1762,10 @@
     <message>
         <source>Drawn</source>
         <translation>Gezogen</translation>
+    </message>
+    <message>
+        <source>Drawn from {name}</source>
+        <translation>Gezogen aus {name}</translation>
     </message>
     <message>
         <source>Draws differ from the sample of the card by {equivalent_radius} % in r_eq, {aspect_ratio} % in AR, {sphericity} % in S and {convexity} % in V/CH (Wasserstein distance over the mean).</source>
@@ -2286,10 +2286,6 @@
     <message>
         <source>Fits</source>
         <translation>Fits</translation>
-    </message>
-    <message>
-        <source>Fits the model first where that has not been done.</source>
-        <translation>Passt das Modell zuerst an, wenn das noch nicht geschehen ist.</translation>
     </message>
     <message>
         <source>Fits, models and material cards (*.json);;All files (*)</source>
@@ -5448,6 +5444,10 @@
         <translation>Kleinster Feret-Durchmesser</translation>
     </message>
     <message>
+        <source>Smallest and largest equivalent radius</source>
+        <translation>Kleinster und größter äquivalenter Radius</translation>
+    </message>
+    <message>
         <source>Smallest equivalent radius</source>
         <translation>Kleinster Äquivalentradius</translation>
     </message>
@@ -5818,10 +5818,6 @@
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 6,261 particles of the published micro-CT set ma165, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
         <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 6.261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
-    </message>
-    <message>
-        <source>Synthetic particle</source>
-        <translation>Synthetisches Partikel</translation>
     </message>
     <message>
         <source>Synthetic particles ({count})</source>
@@ -7976,8 +7972,8 @@
         <translation>Herkunft der Partikel (steht in dataset.json)</translation>
     </message>
     <message>
-        <source>r_eq {low:.3g} to {high:.3g} µm</source>
-        <translation>r_eq {low:.3g} bis {high:.3g} µm</translation>
+        <source>r_eq [µm]</source>
+        <translation>r_eq [µm]</translation>
     </message>
     <message>
         <source>r_eq, A, AR, S: the worst, over the 95th percentile of noise</source>
@@ -8774,6 +8770,10 @@
     <message>
         <source>{low:.3g} to {high:.3g}</source>
         <translation>{low:.3g} bis {high:.3g}</translation>
+    </message>
+    <message>
+        <source>{model}, l_max = {degree}, seed {seed}</source>
+        <translation>{model}, l_max = {degree}, Startwert {seed}</translation>
     </message>
     <message>
         <source>{model}: indistinguishable from the sample in size and form.</source>

@@ -192,7 +192,7 @@ def test_that_the_shipped_particles_are_sound_and_named():
         assert particle.source.path == f"sample:{particle.name}"
         assert particle.source.unit == "um"
         assert particle.group == "synthetic"
-        assert particle.title == "Synthetic particle"
+        assert particle.is_synthetic
 
 
 @pytest.fixture

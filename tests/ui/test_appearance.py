@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.appearance import FONT_SIZE, Appearance, restore_borders
-from regolith_studio.ui.layout import padded
+from regolith_studio.ui.appearance import FONT_SIZE, Appearance
+from regolith_studio.ui.layout import padded, restore_borders
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.result_card import MAGNIFICATION, ResultView
 from regolith_studio.ui.startup import open_window

@@ -95,6 +95,8 @@ def test_that_a_note_longer_than_its_place_is_shown_in_full_by_a_button_and_scro
     assert not note.more.isVisible()
     text.setText("A sentence with a number at its end. " * 8 + "See Eq. 9.")
     wait(note.more.isVisible)
+    whole_lines = divmod(note.viewport().height(), text.fontMetrics().lineSpacing())
+    assert whole_lines == (2, 0), "no tops of a third line"
     assert not note.verticalScrollBar().isVisible()
     note.more.click()
     popup = next(each for each in app.topLevelWidgets() if each.metaObject().className() == "QWhatsThat")

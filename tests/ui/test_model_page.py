@@ -20,6 +20,7 @@ from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.controls import DistributionsPanel, distance_text
+from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.bars import SpectrumEditor
 from tests.plugin import lunar_kinds
@@ -126,7 +127,14 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     page.drawing.draw.click()
     radii = page._drawn.draws.equivalent_radii()
     assert 9.0 <= radii.min() <= radii.max() <= 11.0
-    assert "4 particles" in page.drawing.findings.text()
+    record = page.drawing.card.record
+    (count, ends), source = record.values, record.made_from
+    assert (count, source, record.state) == ("4", "Drawn from ma165", ResultState.CURRENT)
+    assert [float(end) for end in ends.split(" – ")] == pytest.approx([radii.min(), radii.max()], rel=0.006)
+    page.drawing.seed.setValue(3)
+    assert page.drawing.card.record.state is ResultState.STALE
+    page.drawing.seed.setValue(2)
+    assert page.drawing.card.record.state is ResultState.CURRENT
     assert page.gallery.frame.view.picture().std() > 5
     page.drawing.adopt.click()
     assert [entry.id for entry in page._context.session.particles] == [f"ma165-000{i}" for i in range(4)]

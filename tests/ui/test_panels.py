@@ -213,19 +213,19 @@ def test_that_the_list_shows_what_is_known_and_announces_the_row_that_is_clicked
     assert panel.value() == {"selected": "large"}
 
 
-def test_that_a_narrow_list_is_scrolled_and_shows_whole_names(shown, app):
+def test_that_a_list_of_any_width_shows_whole_names_and_whole_columns(shown, app):
     panel = shown(ParticleListPanel())
     panel.set_entries([measured("agglutinate-1", 1.0), measured("bead-2", 2.0)])
     table, name = panel.table, QFontMetrics(panel.table.font()).horizontalAdvance("agglutinate-1")
-    panel.resize(400, 300)
-    app.processEvents()
-    assert table.columnWidth(0) >= name
-    assert table.horizontalScrollBar().maximum() == 0
-    panel.resize(150, 300)
-    app.processEvents()
-    assert table.columnWidth(0) >= name
-    assert table.horizontalScrollBar().maximum() > 0
-    assert table.isColumnHidden(1), "one group needs no column"
+    for width, columns in ((150, 1), (230, 2), (500, 4)):
+        panel.resize(width, 300)
+        app.processEvents()
+        assert table.columnWidth(0) >= name
+        assert table.horizontalScrollBar().maximum() == 0
+        assert table.isColumnHidden(1), "one group needs no column"
+        seen = [each for each in range(5) if not table.isColumnHidden(each)]
+        assert len(seen) == columns, width
+        assert all(table.columnWidth(each) >= table.sizeHintForColumn(each) for each in seen)
     tip = table.model().index(0, 0).data(Qt.ItemDataRole.ToolTipRole)
     assert tip.startswith("agglutinate-1\nV [µm³] ")
 

@@ -42,7 +42,7 @@ def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, prefe
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("usual_letters")
-@pytest.mark.parametrize(("language", "letters"), [("en", 100), ("de", 125)])
+@pytest.mark.parametrize(("language", "letters"), [("en", 100), ("de", 125), ("de", 200)])
 def test_that_no_page_is_scrolled_sideways_on_a_small_screen(
     shown, preferences, app, speaking, language, letters
 ):

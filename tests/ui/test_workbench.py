@@ -236,14 +236,14 @@ def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
 def test_that_the_shipped_particles_are_called_synthetic_where_they_are_shown(window, settled):
     name = window.session.selected.id
     assert window.findChild(ParticleListPanel).title.text() == "Synthetic particles (12)"
-    assert window.page.three_views.frames["particle"].title == f"Synthetic particle, {name}"
+    assert window.page.three_views.frames["particle"].title == name
     sample = window.go("sample")
     settled(window)
-    assert sample.frame.title == f"Synthetic particle, {name}"
+    assert sample.frame.title == name
     lecture = window.go("lecture")
     lecture.tabs.setCurrentIndex(LESSONS.index("degrees"))
     settled(window)
-    assert lecture.degrees.frames["particle"].title == f"Synthetic particle, {name}"
+    assert lecture.degrees.frames["particle"].title == name
 
 
 def test_that_escape_ends_the_tour(window):

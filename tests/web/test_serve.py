@@ -111,7 +111,7 @@ def test_that_a_browser_shows_three_views_that_follow_sliders_method_and_mouse(
     if PROGRAM is None:
         pytest.skip("There is no Chromium on this machine.")
     seen = asyncio.run(_use_the_page(url, tmp_path))
-    assert "Synthetic particle" in seen["titles"][0]
+    assert "agglutinate-1" in seen["titles"][0]
     assert "20 facets (36 vertices, 68 triangles)" in seen["titles"][0]
     assert "AR\t1.92\t1.987\t1.987" in seen["table"]  # exact: the polyhedron has the aspect ratio of the fit
     assert seen["errors"] == []

@@ -10,7 +10,6 @@ from PySide6.QtCore import Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QDialogButtonBox,
     QFileDialog,
     QFormLayout,
@@ -82,7 +81,7 @@ class SourceField(QWidget):
     def __init__(self, count: int, unsaved: int) -> None:
         super().__init__()
         self._count = count - unsaved
-        self.kind = named(QComboBox(), "batch_source", tr("Recipe"))
+        self.kind = choice("batch_source", tr("Recipe"), ())
         ours = tr("The files of the {count} open particles, as chosen now", count=self._count)
         self.kind.addItem(ours, "open")
         self.kind.addItem(tr("A recipe file"), "file")

@@ -260,10 +260,9 @@ class ThreeViews(QSplitter):
         self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
-            f"{tr(entry.particle.title)}, {rich(entry.id)}",
+            rich(entry.id),
             tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces))
             + _left_out_text(entry.particle),
-            rich(entry.id),
         )
         self.link.frame(mesh.vertices)
 

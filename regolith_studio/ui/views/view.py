@@ -421,9 +421,3 @@ class ViewFrame(QFrame):
         words = plain_text(self._titles[-1])
         dotted = self._title.fontMetrics().elidedText(words, Qt.TextElideMode.ElideRight, room)
         self._title.setText(html.escape(dotted))
-
-
-def keep_views_high(page: QWidget) -> None:
-    """Keep a third of the window for each view: in low windows, and with a large font, the page scrolls."""
-    for frame in page.findChildren(ViewFrame):
-        frame.setMinimumHeight(page.window().height() // 3)

@@ -8,15 +8,18 @@ from typing import Any
 from PySide6.QtCore import QEvent, QRect, QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QPaintEvent, QValidator
 from PySide6.QtWidgets import (
+    QCheckBox,
     QComboBox,
     QDoubleSpinBox,
     QGridLayout,
     QLabel,
     QLineEdit,
     QPushButton,
+    QSizePolicy,
     QSlider,
     QSpinBox,
     QStyle,
+    QStyleOptionButton,
     QStyleOptionComboBox,
     QStylePainter,
     QWidget,
@@ -29,6 +32,8 @@ MARGIN = 2
 """Pixels between the frame and the text of a combo box."""
 
 
+ELIDED_LETTERS = 22
+"""Width in mean letters down to which a check box elides its label."""
 MOST_LETTERS = 38
 """Width in mean letters up to which a box asks for room for its longest label: own presets have any name."""
 
@@ -72,6 +77,25 @@ class ElidedComboBox(QComboBox):
         painter.end()
 
 
+class ElidedCheckBox(QCheckBox):
+    """A check box that may be narrower than its label, which is elided."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+
+    def minimumSizeHint(self) -> QSize:
+        hint = super().minimumSizeHint()
+        return QSize(min(hint.width(), ELIDED_LETTERS * self.fontMetrics().averageCharWidth()), hint.height())
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        option = QStyleOptionButton()
+        self.initStyleOption(option)
+        room = self.style().subElementRect(QStyle.SubElement.SE_CheckBoxContents, option, self).width()
+        option.text = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideRight, room)
+        QStylePainter(self).drawControl(QStyle.ControlElement.CE_CheckBox, option)
+
+
 class ChoiceBox(ElidedComboBox):
     """Selects one key of `entries`, a mapping of keys to labels, which are translated."""
 
@@ -94,8 +118,9 @@ class ChoiceBox(ElidedComboBox):
 
 
 def choice(name: str, spoken: str, entries: Mapping[Any, str] | Iterable[tuple[Any, str]]) -> QComboBox:
-    """A combo box of values and their labels, which are translated, as wide as the longest."""
-    box = named(QComboBox(), name, spoken)
+    """A combo box of values and their labels, which are translated, as wide as the longest if it can be."""
+    box = named(ElidedComboBox(), name, spoken)
+    box.prefers_whole = True
     for key, label in entries.items() if isinstance(entries, Mapping) else entries:
         box.addItem(tr(label), key)
     return box

@@ -82,7 +82,9 @@ class CitingLabel(QLabel):
 
 
 def heading(text: str) -> QLabel:
-    return named(CitingLabel(text), role="heading")
+    label = named(CitingLabel(text), role="heading")
+    label.setWordWrap(True)
+    return label
 
 
 def hint_label(text: str = "", role: str = "hint") -> QLabel:
@@ -142,6 +144,8 @@ class FixedHeightText(QScrollArea):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
+        part = (self.height() - 2 * self.frameWidth()) % self.fontMetrics().lineSpacing()
+        self.setViewportMargins(0, 0, 0, part)  # the tops of a further line would be seen there
         self.more.setFixedHeight(self.fontMetrics().lineSpacing())
         size = self.more.sizeHint()
         self.more.move(self.width() - size.width(), self.height() - self.more.height() - self.frameWidth())

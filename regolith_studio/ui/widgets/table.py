@@ -17,7 +17,7 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QPixmap, QShowEvent, QStandardItem, QStandardItemModel
+from PySide6.QtGui import QPixmap, QResizeEvent, QShowEvent, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QTableView
 
 from regolith_studio.coarsening.weights import JACCARD
@@ -333,15 +333,16 @@ class ParticleTable(_FittedTable):
     Groups are listed where there are two, weights where one differs from 1. Columns are as wide as their
     contents, and scrolled to where there is no room for them.
 
-    ``columns``: see :func:`particle_columns`.
+    ``columns``: see :func:`particle_columns`. ``scrolls``: else those that have no room are not listed.
     """
 
     chosenChanged = Signal(list)  # noqa: N815
     currentChosen = Signal(str)  # noqa: N815
 
-    def __init__(self, columns: Sequence[ParticleColumn]) -> None:
+    def __init__(self, columns: Sequence[ParticleColumn], *, scrolls: bool = True) -> None:
         super().__init__()
         self.particles = ParticleTableModel(columns, self)
+        self._scrolls, self._empty, self._widths = scrolls, frozenset[str](), [0] * len(columns)
         self.setModel(self.particles)
         self.set_theme(current_theme())
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
@@ -371,14 +372,33 @@ class ParticleTable(_FittedTable):
         """List other particles, or the same ones with new data, and keep the selection."""
         with self._kept_selection():
             self.particles.set_entries(entries)
-            shown = {
-                GROUP: len({entry.particle.group for entry in entries}) > 1,
-                WEIGHT: has_weights(entries),
-            }
-            for number, column in enumerate(self.particles.columns):
-                if column.key in shown:
-                    self.setColumnHidden(number, not shown[column.key])
+            one_group = len({entry.particle.group for entry in entries}) < 2
+            empty = {GROUP: one_group, WEIGHT: not has_weights(entries)}
+            self._empty = frozenset(key for key, is_empty in empty.items() if is_empty)
         self.resizeColumnsToContents()
+
+    def resizeColumnsToContents(self) -> None:
+        header = self.horizontalHeader()
+        for number in range(len(self.particles.columns)):
+            self.setColumnHidden(number, False)  # a hidden one has no width
+        header.setStretchLastSection(False)
+        super().resizeColumnsToContents()
+        self._widths = [header.sectionSize(number) for number in range(header.count())]
+        header.setStretchLastSection(True)
+        self._list_columns()
+
+    def _list_columns(self) -> None:
+        """Hide columns without a content, and those without room where the table does not scroll to them."""
+        room = self.viewport().width()
+        for number, (column, width) in enumerate(zip(self.particles.columns, self._widths, strict=True)):
+            empty = column.key in self._empty
+            room -= 0 if empty else width
+            self.setColumnHidden(number, empty or (not self._scrolls and number > 0 and room < 0))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if not self._scrolls:
+            self._list_columns()
 
     def set_filter(self, keeps: Filter | None) -> None:
         """List only the particles for which this is true."""

@@ -28,7 +28,7 @@ from regolith_studio.session.recipe import Exports
 from regolith_studio.settings import settings_in
 from regolith_studio.ui.layout import Collapsible, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
-from regolith_studio.ui.widgets.fields import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.fields import ElidedCheckBox, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
 from regolith_studio.ui.widgets.presets import PresetForm
@@ -66,7 +66,7 @@ class ExportPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "export_contact", tr("Published contact parameters"))
         self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Published cylinder"))
         self.times = ParameterForm(ScriptTimes, "export")
-        self.lossy = named(QCheckBox(tr("Change shapes where a format needs it")), "dataset_lossy")
+        self.lossy = named(QCheckBox(tr("Change shapes where needed")), "dataset_lossy")
         self.export = named(QPushButton(tr("Export …")), "dataset_export")
         form = QFormLayout()
         form.addRow(tr("Coarse graining"), self.coarse_graining)
@@ -200,8 +200,9 @@ class ExportPanel(QWidget):
 
     def _box(self, key: str) -> QCheckBox:
         exporter = EXPORTERS[key]
-        box = named(QCheckBox(tr(exporter.label)), f"dataset_to_{key}")
+        box = named(ElidedCheckBox(tr(exporter.label)), f"dataset_to_{key}")
         lines = [
+            tr(exporter.label),
             tr("Contains: {what}", what="; ".join(map(tr, exporter.carries))),
             tr("Does not contain: {what}", what="; ".join(map(tr, exporter.loses))),
         ]

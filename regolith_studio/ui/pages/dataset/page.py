@@ -560,6 +560,8 @@ class DatasetPage(PageWidget):
             parent=controls,
             spacing=0,
         )
+        for plot in (self.quality, self.distribution):
+            plot.fit_to_font()
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (scrolled(self.exports), tr("Exported"))]

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QObject, QPoint, Qt, QTimer, Signal
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QMainWindow, QMenu, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
@@ -33,7 +32,6 @@ from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plots import PlotArea
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
-from regolith_studio.ui.views.view import keep_views_high
 from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.table import ParticleTable, particle_columns
 
@@ -59,15 +57,13 @@ class ParticleListPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("particle_list")
-        self.table = named(
-            ParticleTable(particle_columns(*COLUMNS)), "particle_table", spoken=tr("Particles")
-        )
+        table = ParticleTable(particle_columns(*COLUMNS), scrolls=False)
+        self.table = named(table, "particle_table", spoken=tr("Particles"))
         self.table.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.table.customContextMenuRequested.connect(self._show_menu)
         self.table.currentChosen.connect(self._choose)
         self._selected = ""
         self.title = heading(tr("Particles"))
-        self.title.setWordWrap(True)
         self.hint = hint_label(tr("Drop mesh files or folders anywhere in the window to open them."))
         vbox(self.title, (self.table, 1), self.hint, parent=self)
 
@@ -305,10 +301,6 @@ class ExplorePage(PageWidget):
             columns.setStretchFactor(part, share)
         columns.setObjectName("explore_columns")
         hbox(columns, parent=self)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        keep_views_high(self)
 
     def _wire(self, context: PageContext) -> None:
         session, bindings = context.session, context.bindings

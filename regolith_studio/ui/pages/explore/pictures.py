@@ -65,7 +65,7 @@ class PictureExport(QObject):
         if kind == SCREENSHOT:
             self._write(self._three_views.snapshot(scale, transparent), path)
             return
-        titles = view_titles(entry.particle.title, results.surface_l_max, results.coarsened)
+        titles = view_titles(entry.particle.name, results.surface_l_max, results.coarsened)
         pose = self._three_views.views["particle"].pose
         surfaces = (entry.particle.mesh, results.surface, results.coarsened)
         job = Job(draw_figure, (*surfaces, titles, path, scale, pose, transparent))

@@ -18,7 +18,6 @@ from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView, PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, font_share
 from regolith_studio.ui.translation import rich, tr
-from regolith_studio.ui.views.view import keep_views_high
 from regolith_studio.ui.widgets.fields import ChoiceBox
 
 FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
@@ -215,7 +214,7 @@ class LecturePage(PageWidget):
         if fit is None or self._made_for.get("degrees") == (fit,):
             return
         self._made_for["degrees"] = (fit,)
-        self.degrees.show_particle(entry.particle.mesh, f"{tr(entry.particle.title)}, {rich(entry.id)}")
+        self.degrees.show_particle(entry.particle.mesh, rich(entry.id))
         show = self.degrees.show_steps
         job = Job(trace_degrees, (entry.particle.mesh, fit))
         self._context.start(
@@ -275,7 +274,6 @@ class LecturePage(PageWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        keep_views_high(self)
         if self._shown_size not in (0.0, self._size()):
             self._show_font_size()
 

@@ -8,7 +8,6 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QFormLayout,
     QGridLayout,
     QLabel,
@@ -34,10 +33,18 @@ from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.ui.layout import STRETCH, hbox, named, side_by_side, vbox
 from regolith_studio.ui.pages.model.evaluation import StudyTableView
+from regolith_studio.ui.result_card import ResultView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.views.view import SceneView, ViewFrame
-from regolith_studio.ui.widgets.fields import ChoiceBox, DecimalField, NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.fields import (
+    ChoiceBox,
+    DecimalField,
+    ElidedCheckBox,
+    ElidedComboBox,
+    NumberSlider,
+    NumberSpec,
+)
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import (
     ElidedLabel,
@@ -64,15 +71,16 @@ class SourceControls(QWidget):
     """Selects a sample or material, the model and its settings."""
 
     sourceChanged = Signal(str)  # noqa: N815
+    requestChanged = Signal()  # noqa: N815
     openRequested = Signal()  # noqa: N815
     fitRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_source")
-        self.source, self.model = QComboBox(), QComboBox()
+        self.source, self.model = ElidedComboBox(), ElidedComboBox()
         self.l_max = NumberSlider(L_MAX)
-        self.half = QCheckBox(tr("Fit to a random half only"))
+        self.half = ElidedCheckBox(tr("Fit to a random half only"))
         self.open, self.fit = QPushButton(tr("Open …")), QPushButton(tr("Fit the model"))
         self.summary, self.findings = hint_label(), hint_label()
         self.forms = {key: SettingsForm(model.Settings, without=("l_max",)) for key, model in MODELS.items()}
@@ -81,6 +89,9 @@ class SourceControls(QWidget):
         self._place()
         self.source.currentIndexChanged.connect(lambda _: self.sourceChanged.emit(self.source.currentData()))
         self.model.currentIndexChanged.connect(lambda _: self._show_model())
+        forms = (form.edited for form in self.forms.values())
+        for changed in (self.half.toggled, self.l_max.valueChanged, *forms):
+            changed.connect(lambda *_: self.requestChanged.emit())
         self.open.clicked.connect(self.openRequested)
         self.fit.clicked.connect(self.fitRequested)
         self._show_model()
@@ -146,6 +157,7 @@ class SourceControls(QWidget):
         self._forms.setCurrentWidget(self.forms[key])
         for each, form in self.forms.items():
             form.setVisible(each == key)
+        self.requestChanged.emit()
 
     def _configure(self) -> None:
         for key, model in MODELS.items():
@@ -164,10 +176,6 @@ class SourceControls(QWidget):
             widget.setObjectName(f"model_{name}")
             widget.setAccessibleName(names.get(name, widget.text() if hasattr(widget, "text") else name))
         self.l_max.field.setObjectName("model_l_max")
-        self.source.setMinimumContentsLength(12)
-        self.source.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.model.setMinimumContentsLength(12)
-        self.model.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
 
     def _place(self) -> None:
         vbox(
@@ -186,7 +194,7 @@ class SourceControls(QWidget):
 class DrawControls(QWidget):
     """Number, seed and sizes of the drawn particles."""
 
-    drawRequested = Signal()  # noqa: N815
+    requestChanged = Signal()  # noqa: N815
     adoptRequested = Signal()  # noqa: N815
     namesChanged = Signal(tuple)  # noqa: N815
 
@@ -196,15 +204,21 @@ class DrawControls(QWidget):
         self.number, self.seed = QSpinBox(), QSpinBox()
         self.limited = QCheckBox(tr("Limit the equivalent radius"))
         self.smallest, self.largest = DecimalField(), DecimalField()
-        self.draw, self.adopt = QPushButton(tr("Draw")), QPushButton(tr("Use as population"))
-        self.findings = hint_label()
+        captions = tr("Particles"), tr("r_eq [µm]")
+        self.card = ResultView("model_drawn", captions, tr("Draw"), tr("Draw again"))
+        self.card.caption(1, rich_symbol(captions[1]), tr("Smallest and largest equivalent radius"))
+        self.draw, self.adopt = self.card.button, QPushButton(tr("Use as population"))
         self.names = QLineEdit()
         self._names_label = QLabel(tr("Components"))
         self._configure()
         self._place()
         self.names.editingFinished.connect(self._rename)
         self.limited.toggled.connect(self._limit)
-        self.draw.clicked.connect(self.drawRequested)
+        for changed in (
+            *(self.number.valueChanged, self.seed.valueChanged, self.limited.toggled),
+            *(self.smallest.valueChanged, self.largest.valueChanged),
+        ):
+            changed.connect(lambda *_: self.requestChanged.emit())
         self.adopt.clicked.connect(self.adoptRequested)
         self._limit(False)
         self.set_ready(source=False, drawn=False)
@@ -222,7 +236,8 @@ class DrawControls(QWidget):
 
     def set_ready(self, *, source: bool, drawn: bool) -> None:
         """Set whether there is something to fit a model to, and whether particles have been drawn."""
-        self.draw.setEnabled(source)
+        missing = tr("No particle is open: open some, or choose a material.")
+        self.card.set_startable("" if source else missing)
         self.adopt.setEnabled(drawn)
 
     def value(self) -> dict[str, Any]:
@@ -267,14 +282,12 @@ class DrawControls(QWidget):
             "smallest": tr("Smallest equivalent radius"),
             "largest": tr("Largest equivalent radius"),
             "names": tr("Names of the components, the most numerous first"),
-            "draw": tr("Draw particles"),
             "adopt": tr("Use the drawn particles as population"),
         }
         for name, words in names.items():
             getattr(self, name).setObjectName(f"model_{name}")
             getattr(self, name).setAccessibleName(words)
         self.names.setToolTip(tr("Names of the components, separated by commas, the most numerous first."))
-        self.draw.setToolTip(tr("Fits the model first where that has not been done."))
         self.adopt.setToolTip(tr("Open the drawn particles: to be coarsened and made a dataset."))
 
     def _place(self) -> None:
@@ -288,8 +301,7 @@ class DrawControls(QWidget):
             form,
             self.limited,
             hbox((self.smallest, 1), (self.largest, 1)),
-            self.draw,
-            FixedHeightText((self.findings,)),
+            self.card,
             self.adopt,
             parts,  # last, because only mixtures have them
             parent=self,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import InputError, RegolithError
@@ -48,11 +49,11 @@ from regolith_studio.ui.pages.model.controls import (
     request_from,
 )
 from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
-from regolith_studio.ui.result_card import RunController
+from regolith_studio.ui.result_card import ResultRecord, RunController
 from regolith_studio.ui.theme import current_theme
-from regolith_studio.ui.translation import in_a_sentence, tr, translate
+from regolith_studio.ui.translation import in_a_sentence, number_text, tr, translate
 from regolith_studio.ui.views.image_view import make_view
-from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.toast import Toast
 
 MODEL_FILES, CARD_FILES = N_("Models (*.json)"), N_("Cards (*.json)")
@@ -181,6 +182,22 @@ def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:
             return None
 
 
+def drawn_record(drawn: GenerationResult, fitted: ModelFitResult | None) -> ResultRecord:
+    """The drawn particles as their card shows them."""
+    count, ends, rejected = len(drawn.draws), drawn.radii, drawn.draws.rejected
+    radii = " – ".join(short_number(end, 3) for end in ends) if ends is not None else "–"
+    degree, seed = drawn.model.l_max, drawn.request.seed
+    made_with = tr(
+        "{model}, l_max = {degree}, seed {seed}",
+        model=tr(MODELS[drawn.model.key].label),
+        degree=degree,
+        seed=seed,
+    )
+    note = tr("{count:,} draws rejected", count=rejected) + "." if rejected else ""
+    source = tr("Drawn from {name}", name=fitted.source.name) if fitted is not None else ""
+    return ResultRecord((number_text(count, ","), radii), source, made_with, note=note)
+
+
 SOURCE_FILTER = N_("Fits, models and material cards (*.json);;All files (*)")
 DRAWN = N_("A drawn particle")
 POPULATION_LEVEL = 4
@@ -200,6 +217,7 @@ class ModelPage(PageWidget):
         self._model: FittedModel | None = None
         self._fitted_to: tuple[object, ...] = ()
         self._drawn: GenerationResult | None = None
+        self._drawn_for: tuple[object, ...] | None = None
         self._live_seed = 0
 
     def build(self) -> None:
@@ -217,6 +235,7 @@ class ModelPage(PageWidget):
         self.distributions = DistributionsPanel()
         self.evaluation = EvaluationPanel()
         self.judging = RunController(self._context, self.evaluation.card, "evaluate", self.evaluate)
+        self.draws = RunController(self._context, self.drawing.card, "draw", self.draw)
         self._place()
         self._connect()
         bindings.refresh("particles", self._show_sources)
@@ -366,7 +385,8 @@ class ModelPage(PageWidget):
 
     def _draw_fitted(self) -> None:
         job = Job(draw_shapes, (self._model, self._request()))
-        self._context.start(tr("Drawing particles"), job, self._show_drawn, queue="draw")
+        self._drawn_for = self._to_fit(), self.drawing.value()
+        self.draws.start(tr("Drawing particles"), job, self._show_drawn)
 
     def _evaluate(self) -> None:
         sample = self._sample()
@@ -401,6 +421,7 @@ class ModelPage(PageWidget):
             self._show_live(fitted, fitted.first, again=True)
         self.gallery.show_shapes(fitted.examples, ())
         self._context.stop("compare")
+        self.draws.forget()
         self.distributions.show_compared(None)
         self.evaluation.show_evaluated(None)
         self.judging.forget()
@@ -411,20 +432,14 @@ class ModelPage(PageWidget):
         if fitted.source.notes:
             self._context.toast.problem(fitted.source.notes[0], "\n".join(fitted.source.notes))
 
-    def _show_drawn(self, drawn: GenerationResult) -> None:
+    def _show_drawn(self, drawn: GenerationResult) -> ResultRecord:
         self._drawn = drawn
-        words = tr("{count:,} particles", count=len(drawn.draws))
-        if drawn.radii is not None:
-            low, high = drawn.radii
-            words += ", " + tr("r_eq {low:.3g} to {high:.3g} µm", low=low, high=high)
-        if drawn.draws.rejected:
-            words += "; " + tr("{count:,} draws rejected", count=drawn.draws.rejected)
-        self.drawing.findings.setText(rich_symbol(f"{words}."))
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws, drawn.request.size_range))
         show = self.distributions.show_compared
         self._context.start(tr("Comparing distributions"), job, show, queue="compare", repeats=True)
         self._show_state()
+        return drawn_record(drawn, self._fitted)
 
     def _request_live(self, again: bool = False) -> None:
         """Draw the particle of the present model and seed."""
@@ -483,6 +498,15 @@ class ModelPage(PageWidget):
         self.drawing.set_ready(source=known, drawn=self._drawn is not None)
         missing = tr("Fit a model to a sample of 20 particles or more.")
         self.evaluation.card.set_startable("" if self._sample() else missing)
+        self._mark_drawn()
+
+    def _mark_drawn(self) -> None:
+        """Mark the drawn particles as outdated where they are not what would be drawn now."""
+        try:
+            asked = self._to_fit(), self.drawing.value()
+        except RegolithError:  # the radii contradict each other
+            asked = None
+        self.draws.set_outdated(asked != self._drawn_for)
 
     def _sample(self) -> Sample | None:
         content = self._fitted.source.content if self._fitted else None
@@ -502,19 +526,25 @@ class ModelPage(PageWidget):
 
     def _place(self) -> None:
         shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]
-        below = tabs("model_tabs", [*shown, (self.evaluation, tr("Evaluation"))])
-        middle = stacked([self.live, below], [380, 420], stretch=1)
+        self._tabs = tabs("model_tabs", [*shown, (self.evaluation, tr("Evaluation"))])
+        middle = stacked([self.live, self._tabs], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
         parts = [padded(middle, 10, 10, 2, 8), scrolled_column([self.source, self.drawing])]
         columns = side_by_side(parts, [900, 310], stretch=0)
         columns.setObjectName("model_columns")
         hbox(columns, parent=self)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        bar = self._tabs.tabBar().sizeHint().height()
+        self._tabs.setMinimumHeight(bar + self.gallery.minimumSizeHint().height())
+
     def _connect(self) -> None:
         self.source.sourceChanged.connect(lambda _: self._show_source())
         self.source.openRequested.connect(self.open_source)
         self.source.fitRequested.connect(self.fit_model)
-        self.drawing.drawRequested.connect(self.draw)
+        for panel in (self.source, self.drawing):
+            panel.requestChanged.connect(self._mark_drawn)
         self.drawing.adoptRequested.connect(self.adopt)
         self.drawing.namesChanged.connect(lambda names: self._try(lambda: self._rename(names)))
         self.live.spectrum.valueChanged.connect(self._edit)

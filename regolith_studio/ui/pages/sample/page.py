@@ -409,8 +409,7 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        title = f"{tr(entry.particle.title)}, {rich(entry.id)}"
-        self.frame.set_texts(title, tr("{count:,} triangles", count=len(mesh.faces)))
+        self.frame.set_texts(rich(entry.id), tr("{count:,} triangles", count=len(mesh.faces)))
         if mesh is not self._shown:
             self._shown = mesh
             self._faults = {}

@@ -231,7 +231,7 @@ class StatisticsPanel(QWidget):
         self.plot = CurvePlot(
             "", tr("Share [%]"), tr("The distribution appears when particles are measured.")
         )
-        self.key = named(QComboBox(), "statistics_key", tr("Descriptor of the statistics"))
+        self.key = choice("statistics_key", tr("Descriptor of the statistics"), ())
         for key, row in CATALOGUE.items():
             if not row.costly:
                 self.key.addItem(tr(row.label), key)
