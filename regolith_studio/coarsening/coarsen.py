@@ -266,9 +266,12 @@ def _measured(
     solid = result.solid
     unit: Polyhedron
     if isinstance(solid, ConvexCompound):
+        # A union can meet V and CH at the same time, so that no error is unavoidable.
         unit, overlap = solid, compound_distance(target.mesh, solid)
         bounds = dict.fromkeys(WEIGHT_KEYS, 0.0)
     else:
+        # Not the compiled intersection, which keeps corners apart where more than three planes meet, as those
+        # of decimated hulls do.
         unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(solid)
         overlap = target.jaccard_distance(unit.half_spaces)
         bounds = attainable_errors(target.descriptors, n_facets, weights)

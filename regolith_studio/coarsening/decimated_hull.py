@@ -37,6 +37,7 @@ def quadric_half_spaces(target: Target, n_facets: int) -> HalfSpaces:
         If the decimated hull does not hold the particle's centroid inside all of its planes.
     """
     mesh = decimated_hull(target, n_facets)
+    # Triangles without area have no normal, and half-spaces must hold the centroid.
     sound = mesh.face_areas > 1e-12
     normals = mesh.face_area_vectors[sound] / mesh.face_areas[sound, None]
     offsets = np.einsum("ij,ij->i", normals, mesh.triangles[sound, 0])

@@ -90,6 +90,7 @@ def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     limit = max_sphericity(n_facets)
     if sphericity <= limit:
         return None
+    # As many digits as it takes for the two numbers to differ in print.
     digits = next((d for d in range(3, 9) if f"{sphericity:.{d}f}" != f"{limit:.{d}f}"), 9)
     shown, most = Number(sphericity, f".{digits}f"), Number(limit, f".{digits}f")
     values = {"sphericity": shown, "faces": n_facets, "most": most}

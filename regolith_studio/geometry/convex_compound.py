@@ -15,7 +15,8 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.topology import Connectivity, merged_vertices
 
-LEDGE = 1e-7
+# Above the 2e-8 by which parts that touch overlap, and above what single precision (STL) tells apart.
+DEGENERATE_EDGE = 1e-7
 """Edges of the union shorter than this share of its size are collapsed: parts that touch overlap by less."""
 
 
@@ -165,6 +166,7 @@ def _united(meshes: Sequence[Mesh], facets: Sequence[IntArray]) -> tuple[Mesh, I
 
     points = np.concatenate([mesh.vertices for mesh in meshes])
     low, high = points.min(axis=0), points.max(axis=0)
+    # The tolerance of manifold3d grows with the largest coordinate: at size 1 about the origin it is least.
     middle, size = (low + high) / 2, float((high - low).max())
     solids = []
     for mesh, of_triangles in zip(meshes, facets, strict=True):
@@ -177,7 +179,7 @@ def _united(meshes: Sequence[Mesh], facets: Sequence[IntArray]) -> tuple[Mesh, I
     if union.status() != manifold3d.Error.NoError or union.is_empty():
         raise GeometryError("The union of the convex parts cannot be made.")
     solid = union.to_mesh64()
-    vertices, triangles, exposed = _without_ledges(
+    vertices, triangles, exposed = _without_degenerate_edges(
         np.asarray(solid.vert_properties)[:, :3],
         np.asarray(solid.tri_verts).astype(np.int64),
         np.asarray(solid.face_id).astype(np.int64),
@@ -185,19 +187,20 @@ def _united(meshes: Sequence[Mesh], facets: Sequence[IntArray]) -> tuple[Mesh, I
     return Mesh(vertices * size + middle, triangles), exposed
 
 
-def _without_ledges(
+def _without_degenerate_edges(
     vertices: FloatArray, triangles: IntArray, facets: IntArray
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """The same surface, with a size of 1, without edges that single precision cannot hold.
 
-    Where parts touch, one stands out of the other by :data:`LEDGE` or less; programs that merge corners while
-    they read a mesh would find it open there.
+    Where parts touch, one stands out of the other by less than :data:`DEGENERATE_EDGE`; programs that merge
+    corners while they read a mesh would find it open there.
     """
-    merged, corners = merged_vertices(vertices, triangles, LEDGE)
-    kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    if kept.all() or not Connectivity.of(corners[kept], len(merged)).closed:
+    merged, corners = merged_vertices(vertices, triangles, DEGENERATE_EDGE)
+    proper = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    # Merging may also join sheets of the surface that only come close, which would leave edges of four faces.
+    if proper.all() or not Connectivity.of(corners[proper], len(merged)).closed:
         return vertices, triangles, facets
-    return merged, corners[kept], facets[kept]
+    return merged, corners[proper], facets[proper]
 
 
 Polyhedron = ConvexPolyhedron | ConvexCompound

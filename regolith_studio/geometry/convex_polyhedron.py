@@ -61,6 +61,7 @@ class ConvexPolyhedron:
         along, across = _tangents(half_spaces.normals)
         for plane in range(len(half_spaces)):
             around = np.unique(merged[(triples == plane).any(axis=1)])
+            # A plane with fewer touches the polyhedron in a corner or an edge only.
             if len(around) >= 3:
                 kept.append(plane)
                 facets.append(_ordered(around, vertices[around], along[plane], across[plane]))
@@ -148,12 +149,14 @@ class ConvexPolyhedron:
 
 def _dual_vertices(half_spaces: HalfSpaces) -> tuple[FloatArray, IntArray]:
     """Vertices (k, 3) and the three planes that meet in each (k, 3)."""
+    # At this scale the dual points are at least 1 away from the origin, whatever the unit of length.
     size = float(half_spaces.offsets.max())
     try:
         dual = ConvexHull(half_spaces.normals * (size / half_spaces.offsets)[:, None])
     except (QhullError, ValueError) as error:
         raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.") from error
     distance = -dual.equations[:, 3]
+    # The intersection is bounded if and only if the dual hull holds the origin strictly inside.
     if not (distance > 1e-12).all():
         raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
     return dual.equations[:, :3] / distance[:, None] * size, dual.simplices.astype(np.int64)

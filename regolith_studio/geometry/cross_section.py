@@ -29,6 +29,7 @@ class CrossSection:
         """Enclosed area, by Green's theorem; holes count as holes."""
         if not len(self.segments):
             return 0.0
+        # About the middle: the areas of triangles with a far origin are large and cancel.
         middle = self.points.mean(axis=0)
         start, end = (self.points[self.segments[:, side]] - middle for side in (0, 1))
         return float(np.cross(start, end).sum(axis=0) @ self.normal) / 2

@@ -19,6 +19,7 @@ def decimated(mesh: Mesh, n_faces: int) -> Mesh:
     Raises ValueError if the mesh has fewer triangles.
     """
     with _one_at_a_time:
+        # A copy of the vertices: the library refuses arrays that cannot be written.
         vertices, faces = fast_simplification.simplify(
             np.array(mesh.vertices), mesh.faces.astype(np.int32), target_count=n_faces
         )

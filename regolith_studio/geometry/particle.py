@@ -63,7 +63,7 @@ class Particle:
     notes
         One sentence for each thing that was wrong with the input and each repair made.
     weight
-        How many grains of its population it stands for: above 1 where larger grains were more often
+        How many grains of its population it represents: above 1 where larger grains were more often
         left out because the border of a scan cut them (Miles and Lantuejoul).
     repair
         Health before and after the repair, and what was done; ``None`` if the mesh was not repaired.

@@ -83,6 +83,8 @@ def _wedges(ring: list[int], forward: list[bool]) -> list[tuple[int, int]]:
 
 def _angles(axes: FloatArray, spokes: FloatArray) -> FloatArray:
     """Angle of each spoke about its axis, counter-clockwise seen against it; all of shape (n, 3)."""
+    # Neither vector has length 1: each product is to be divided by one length, and both are multiplied by the
+    # other instead.
     first = np.cross(axes, np.eye(3)[np.argmin(np.abs(axes), axis=1)])
     second = np.cross(axes, first)
     return np.asarray(
@@ -147,7 +149,7 @@ def _split_triangle(faces: IntArray, half: int, middle: int) -> list[tuple[int, 
 TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Shares of the mesh's size within which the vertices of an open mesh may be joined."""
 
-MIN_JUDGED_SHARE = 0.002
+MIN_CHECKED_SHARE = 0.002
 """Up to this share of the surface holes are closed without asking whether there is a body about them."""
 
 MAX_TWISTED_SHARE = 0.05
@@ -241,6 +243,9 @@ def repair(mesh: Mesh) -> Repair:
         _require_volume(unit_size(mesh)[0], mesh.faces)
         return Repair(mesh, before, before, ())
     draft = _Draft(*unit_size(mesh))
+    # Merging makes faces with two equal corners, and lets double faces of rounded triangle soups be seen as
+    # such. Winding splits bodies that share an edge, so that it comes before bodies are counted; only the
+    # largest needs its holes closed, and only a closed one has a sign of volume.
     for step in (
         _merge_equal_vertices,
         _drop_degenerate,
@@ -306,6 +311,7 @@ def _drop_duplicates(draft: _Draft) -> _Draft:
 def _parity(faces: IntArray) -> IntArray:
     """+1 for faces whose vertices are an even permutation of their sorted order, else -1."""
     a, b, c = faces.T
+    # Of the three cyclic comparisons two hold for an even permutation, and one for an odd.
     return np.where((a < b).astype(int) + (b < c) + (c < a) == 2, 1, -1).astype(np.int64)
 
 
@@ -378,6 +384,7 @@ def _make_orientable(draft: _Draft) -> _Draft:
 
 def _split_non_manifold(draft: _Draft) -> _Draft:
     """Make every edge one of two faces: each wedge of the solid at a non-manifold edge gets its own."""
+    # Which pairs of faces bound a wedge of the solid is seen only from faces that look outwards.
     inside_out = float(_whole_volume(draft)) < 0.0
     faces = draft.faces[:, ::-1] if inside_out else draft.faces
     count = edge_table(faces, len(draft.vertices)).non_manifold_edges
@@ -434,10 +441,11 @@ def _fill(draft: _Draft) -> _Draft:
     if not holes.count:
         return draft
     if not (edge_table(holes.faces, len(holes.vertices)).uses == 2).all():
+        # The middle of a fan is a new corner, so that no inner edge of it can be one of the mesh already.
         holes = fill_holes(draft.vertices, draft.faces, only_fans=True)
     whole = Mesh(holes.vertices, holes.faces).surface_area
     share = holes.area / whole if whole > 0.0 else 1.0
-    if share > MIN_JUDGED_SHARE:
+    if share > MIN_CHECKED_SHARE:
         require_closed_volume(Mesh(holes.vertices, holes.faces), len(holes.faces) - len(draft.faces), share)
     text = count_message(
         N_("Filled 1 hole with {share} of the surface."),
@@ -483,6 +491,7 @@ def _size(mesh: Mesh) -> float:
 
 def _percent(share: float) -> str:
     if share > 0.999:
+        # Three digits would say 100 %, as if nothing had been left out.
         return "over 99.9 %"
     return Number(100 * share, ".3g", " %") if share > 0.9 else Number(100 * share, ".2g", " %")
 

@@ -18,6 +18,7 @@ def fibonacci_directions(n: int) -> FloatArray:
     if n < 1:
         raise ValueError(f"n must be at least 1, got {n}")
     step = np.arange(n)
+    # Bands of equal height on a sphere have equal areas (Archimedes); these are their middles.
     z = 1.0 - (2.0 * step + 1.0) / n
     ring = np.sqrt(1.0 - z**2)
     angle = GOLDEN_ANGLE * step

@@ -235,6 +235,7 @@ def sample_spectrum(particles: Sequence[ShCoefficients]) -> PowerSpectrum:
     l_max = min(particle.l_max for particle in particles)
     powers = np.stack([power_spectrum(particle.truncated(l_max)).values for particle in particles])
     firsts = np.array([particle.values[0] for particle in particles])
+    # A fixed seed: the same sample has the same band in every figure and file.
     generator = np.random.default_rng(np.random.SeedSequence(0))
     resampled = np.empty((N_RESAMPLES, l_max + 1))
     for row in resampled:  # one resample at a time: a sample may have a hundred thousand particles

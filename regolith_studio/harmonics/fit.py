@@ -122,10 +122,11 @@ class HarmonicFit:
         """
         if l_max == self.l_max:
             return self
-        kept = self.coefficients.truncated(l_max)
-        dropped = float((self.coefficients.values[len(kept) :] ** 2).sum()) / (4 * np.pi)
-        error = np.sqrt(self.radial_error**2 + dropped / kept.mean_radius**2)
-        return replace(self, coefficients=kept, radial_error=float(error), largest_radial_error=None)
+        low = self.coefficients.truncated(l_max)
+        # Harmonics are orthogonal, so that mean squares of what was missing and of what is dropped add up.
+        dropped = float((self.coefficients.values[len(low) :] ** 2).sum()) / (4 * np.pi)
+        error = np.sqrt(self.radial_error**2 + dropped / low.mean_radius**2)
+        return replace(self, coefficients=low, radial_error=float(error), largest_radial_error=None)
 
 
 def fit_harmonics(
@@ -149,7 +150,7 @@ def fit_harmonics(
     rule
         Key of ``radius_function.RULES``.
     reference
-        Key of ``reference_surface.REFERENCES``.
+        Key of ``radius_function.REFERENCES``.
 
     Raises
     ------
@@ -178,6 +179,7 @@ def expand_radius(
     unit = 1.0 if reference is None else reference.radii(rays.directions)
     samples = radius.radii / unit
     coefficients = analyse(rays, samples, l_max)
+    # Not from the coefficients, which would have to be rotated back by the tilt of the grid.
     difference = band_limited(rays, samples, l_max) - samples
     return HarmonicFit(
         coefficients,
@@ -195,6 +197,7 @@ def _sampled(
     mesh: Mesh, star_point: ArrayLike | str | None, rays: RayGrid, rule: str
 ) -> tuple[RadiusFunction, tuple[str, ...]]:
     """The radius function about the requested star point, and notes on it."""
+    # A rule or point that was asked for is never replaced by another: outside of the particle it is an error.
     if isinstance(star_point, str):
         if star_point not in STAR_POINT_RULES:
             choices = ", ".join(STAR_POINT_RULES)

@@ -114,7 +114,7 @@ def from_complex_rows(rows: ArrayLike) -> ShCoefficients:
     Raises InputError if a number is missing or not finite, l and m are no degree and order, a row comes
     twice, or the rows of +m and -m contradict each other, so that the radius would not be real.
     """
-    table, degree, order = _checked_rows(rows, 4)
+    table, degree, order = _checked_rows(rows)
     values = table[:, 2] + 1j * table[:, 3]
     l_max = int(degree.max())
     full = np.zeros((l_max + 1) ** 2, dtype=np.complex128)
@@ -134,21 +134,22 @@ def from_shtools_rows(rows: ArrayLike, norm: str = "4pi") -> ShCoefficients:
     """
     if norm not in ("4pi", "ortho"):
         raise InputError(f"The normalisation must be 4pi or ortho, got {norm!r}.")
-    table, degree, order = _checked_rows(rows, 4)
+    table, degree, order = _checked_rows(rows)
     if (order < 0).any():
         raise InputError("A table of SHTOOLS has no negative orders m.")
     values = np.zeros((int(degree.max()) + 1) ** 2)
     values[degree**2 + degree + order] = table[:, 2]
     wave = order > 0
     values[(degree**2 + degree - order)[wave]] = table[wave, 3]
+    # Harmonics normalised to 4 pi are sqrt(4 pi) times the orthonormal ones.
     return ShCoefficients(values * (np.sqrt(4 * np.pi) if norm == "4pi" else 1.0))
 
 
-def _checked_rows(rows: ArrayLike, width: int) -> tuple[FloatArray, IntArray, IntArray]:
+def _checked_rows(rows: ArrayLike) -> tuple[FloatArray, IntArray, IntArray]:
     """The rows, their degrees and their orders."""
     table = np.asarray(rows, dtype=np.float64)
-    if table.ndim != 2 or table.shape[1] != width or not len(table):
-        raise InputError(f"A table of coefficients needs {width} numbers a row, got shape {table.shape}.")
+    if table.ndim != 2 or table.shape[1] != 4 or not len(table):
+        raise InputError(f"A table of coefficients needs 4 numbers a row, got shape {table.shape}.")
     broken = np.flatnonzero(~np.isfinite(table).all(axis=1))
     if len(broken):
         first = "  ".join(f"{number:g}" for number in table[broken[0]])
@@ -181,6 +182,7 @@ def _check_symmetry(full: np.ndarray, degree: IntArray, order: IntArray) -> None
     expected = np.where(every_order % 2, -1.0, 1.0) * np.conj(full[mirror])
     only_mirror = ~given & given[mirror]
     full[only_mirror] = expected[only_mirror]
+    # A row of m = 0 is its own mirror: here the gap is twice its imaginary part, which must vanish, too.
     gap = np.abs(full - expected) * (given & given[mirror])
     if gap.max() > SYMMETRY_TOLERANCE * np.abs(full).max():
         k = int(gap.argmax())
@@ -194,6 +196,7 @@ def _real_from_complex(full: np.ndarray) -> FloatArray:
     """Real coefficients (n,) of complex ones (n,): c_cos = (-1)^m sqrt2 Re, c_sin = -(-1)^m sqrt2 Im."""
     degree, order = degrees(len(full)), orders(len(full))
     size = np.abs(order)
+    # The rows of -m repeat those of +m, as `_check_symmetry` has made sure.
     half = full[degree**2 + degree + size]
     sign = np.where(size % 2, -1.0, 1.0) * np.sqrt(2)
     values = np.where(order > 0, sign * half.real, -sign * half.imag)

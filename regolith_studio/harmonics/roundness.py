@@ -13,6 +13,7 @@ N_OUTLINE = 1024
 """Points of a section: 34 for each of the 30 waves round it at degree 30."""
 N_INSCRIBED = 256
 """Points that are enough for the inscribed circle: its radius is then at most 1e-4 too large."""
+# Ten times the error of the inscribed radius, by which every arc of the inscribed circle would be a corner.
 MIN_EXCESS = 1e-3
 """A corner is sharper than the inscribed circle by at least this share."""
 
@@ -88,6 +89,7 @@ def _runs(chosen: BoolArray) -> list[IntArray]:
     """Indices of each stretch of a closed sequence that is chosen throughout."""
     if chosen.all() or not chosen.any():
         return [np.arange(len(chosen))] if chosen.any() else []
+    # Beginning at a point that is not chosen, no run is split where the curve closes.
     start = int(np.argmin(chosen))
     order = np.roll(np.arange(len(chosen)), -start)
     borders = np.flatnonzero(np.diff(chosen[order].astype(int))) + 1

@@ -16,6 +16,8 @@ from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.radius_function import require_solid, sample_radius
 
+# Searches without this limit ended 18 to 40 % of the equivalent radius off the centre of mass; from there 4
+# of 20 fits of lunar rocks had negative radii.
 SEARCH_RADIUS = 0.25
 """Radius of the search for the least hidden volume, as a share of the equivalent radius."""
 N_SEARCH_RAYS = 1000
@@ -32,10 +34,10 @@ def kernel_centre(mesh: Mesh) -> FloatArray:
     Raises GeometryError if the kernel is empty: no point sees the whole surface.
     """
     size = mesh.volume ** (1 / 3)
-    keep = mesh.face_areas > 1e-14 * mesh.surface_area  # slivers have a normal of rounding errors
-    normals = mesh.face_area_vectors[keep] / mesh.face_areas[keep, None]
+    sound = mesh.face_areas > 1e-14 * mesh.surface_area  # slivers have a normal of rounding errors
+    normals = mesh.face_area_vectors[sound] / mesh.face_areas[sound, None]
     # HiGHS has absolute tolerances of 1e-7: the programme is solved at unit volume about the centroid.
-    corners = (mesh.triangles[keep, 0] - mesh.centroid) / size
+    corners = (mesh.triangles[sound, 0] - mesh.centroid) / size
     offsets = np.einsum("ij,ij->i", normals, corners)
     centre, distance = inscribed_ball(normals, offsets)
     if not distance > 1e-9:
@@ -128,6 +130,7 @@ def faces_away(mesh: Mesh, star_point: FloatArray) -> BoolArray:
     spokes = mesh.triangles[:, 0] - star_point
     facing = np.einsum("ij,ij->i", mesh.face_area_vectors, spokes)
     size = float(np.ptp(mesh.bounds, axis=0).max())
+    # For a face in whose plane the star point lies, the product is rounding error of this order.
     return np.asarray(facing < -1e-12 * size * mesh.face_areas)
 
 
@@ -144,6 +147,7 @@ def hidden_faces(mesh: Mesh, star_point: FloatArray, faces: IntArray | None = No
     directions[~apart] = (0.0, 0.0, 1.0)
     hits = radial_hits(mesh, star_point, directions)
     in_front = hits.distance < distance[hits.ray] * (1 - _TOLERANCE)
+    # The face itself is hit in its middle, before or behind it by rounding.
     other = hits.face != chosen[hits.ray]
     hidden = np.zeros(len(chosen), dtype=np.bool_)
     hidden[hits.ray[in_front & other]] = True
@@ -161,6 +165,7 @@ def hidden_surface_share(mesh: Mesh, star_point: FloatArray) -> float:
         hidden = hidden_faces(mesh, star_point)
         return float(mesh.face_areas[hidden].sum() / mesh.surface_area)
     steps = (np.arange(N_PROBES) + 0.5) / N_PROBES * mesh.surface_area
+    # The last cumulative sum may be a rounding error below the sum of the areas.
     picks = np.minimum(np.searchsorted(np.cumsum(mesh.face_areas), steps), len(mesh.faces) - 1)
     return float(hidden_faces(mesh, star_point, picks.astype(np.int64)).mean())
 
@@ -206,5 +211,5 @@ def star_point_visibility(mesh: Mesh) -> StarPointVisibility:
         if np.isfinite(volume):
             x, y, z = point.tolist()
             hidden = hidden_surface_share(solid, point)
-            return StarPointVisibility((x, y, z), name, hidden, max(volume, 0.0) if hidden else 0.0)
+            return StarPointVisibility((x, y, z), name, hidden, volume if hidden else 0.0)
     raise GeometryError("No star point was found inside the particle.")

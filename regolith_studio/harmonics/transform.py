@@ -17,7 +17,7 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from threading import RLock
+from threading import Lock
 from types import ModuleType
 from typing import Any
 
@@ -35,7 +35,7 @@ from regolith_studio.harmonics.coefficients import (
 )
 from regolith_studio.harmonics.sphere_grid import analyse_rings, ring_nodes, synthesise_rings
 
-_one_at_a_time = RLock()
+_one_at_a_time = Lock()
 
 
 def call_shtools(routine: str, *arguments: Any, **options: Any) -> Any:
@@ -60,6 +60,7 @@ def _routines() -> ModuleType:
     try:
         return import_module("pyshtools.backends.shtools")
     finally:
+        # Whoever imports pyshtools later must not get the empty packages.
         for name in [name for name in sys.modules if name.split(".")[0] == "pyshtools"]:
             del sys.modules[name]
 
@@ -82,6 +83,7 @@ def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients
         raise ValueError("rotation must be proper, this one mirrors")
     if coefficients.l_max == 0:
         return coefficients
+    # SHTOOLS rotates the coordinate system; that of a body by the same rotation is the inverse one.
     angles = -np.array(_euler_angles(matrix)[::-1])
     turned = call_shtools(
         "rotate.SHRotateRealCoef", to_pyshtools(coefficients), angles, _quarter_turn(coefficients.l_max)
@@ -92,6 +94,7 @@ def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients
 def _euler_angles(matrix: FloatArray) -> tuple[float, float, float]:
     """Angles of turns about z, the new y and the new z; about z alone the last is zero."""
     beta = np.arctan2(np.hypot(matrix[0, 2], matrix[1, 2]), matrix[2, 2])
+    # Both angles about z are one rotation here, and the other formulas would divide rounding by rounding.
     if np.hypot(matrix[0, 2], matrix[1, 2]) < 1e-12:
         return float(np.arctan2(-matrix[0, 1], matrix[1, 1])), float(beta), 0.0
     alpha = np.arctan2(matrix[1, 2], matrix[0, 2])

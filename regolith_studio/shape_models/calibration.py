@@ -79,11 +79,14 @@ class FineDegrees:
         """From expansions of ln r of measured particles, shape (n, (l_max + 1)^2), above degree `base`."""
         table = log_shape_features(rows[:, : (base + 1) ** 2], equivalent_radii)
         fine = np.log(np.maximum(powers(rows)[:, base + 1 :], MIN_POWER))
+        # Of a feature that all particles share the deviation is 0.
         middle, spread = table.mean(axis=0), np.maximum(table.std(axis=0), 1e-9)
         standard = (table - middle) / spread
         normal = standard.T @ standard + RIDGE * len(table) * np.eye(table.shape[1])
         slopes = np.linalg.solve(normal, standard.T @ (fine - fine.mean(axis=0))).T / spread
         left = fine - table @ slopes.T
+        # np.cov makes a number of a single degree, and a singular matrix of fewer particles than degrees,
+        # which has no Cholesky factor.
         covariance = np.cov(left.T).reshape(2 * [fine.shape[1]]) + 1e-9 * np.eye(fine.shape[1])
         return cls(left.mean(axis=0), slopes, np.asarray(np.linalg.cholesky(covariance), dtype=np.float64))
 
@@ -156,6 +159,7 @@ class GaussianCopula:
         n, d = table.shape
         ranks = np.argsort(np.argsort(table, axis=0, kind="stable"), axis=0, kind="stable")
         scores = ndtri((ranks + 0.5) / n)
+        # All columns hold the same n scores in other orders, so that one sum of squares divides them all.
         correlations = np.clip(scores.T @ scores / (scores[:, 0] @ scores[:, 0]), -1.0, 1.0)
         shrunk = (n * correlations + d * np.eye(d)) / (n + d)
         return cls(np.quantile(table, ndtr(_places(N_QUANTILES)), axis=0), shrunk)
@@ -167,6 +171,7 @@ class GaussianCopula:
         """
         places = _places(len(self.quantiles))
         normal = rng.standard_normal((len(first), len(self.correlations)))
+        # Equal sizes have equal quantiles, and np.interp needs places that ascend.
         normal[:, 0] = np.interp(first, _rising(self.quantiles[:, 0]), places)
         scores = normal @ self._factor.T
         columns = [np.interp(scores[:, j], places, self.quantiles[:, j]) for j in range(1, scores.shape[1])]
@@ -245,6 +250,7 @@ class CalibrationTarget:
         """The next offset, where the last one gave features (m, d) and outer features (m, 3)."""
         shift = RATE * (self.mean - numbers.mean(axis=0))
         too_round = outer[:, SPHERICITY].mean() - self.outer[:, SPHERICITY].mean()
+        # Between the degrees the shift follows the powers of the sample, in its mean the sphericity instead.
         shift[_ROUGHNESS] += SPHERICITY_RATE * too_round - shift[_ROUGHNESS].mean()
         ratio = ((self.deviation + 1e-9) / (numbers.std(axis=0) + 1e-9)) ** RATE
         shift[: _ROUGHNESS.start], ratio[: _ROUGHNESS.start], ratio[CONVEXITY] = 0.0, 1.0, 1.0

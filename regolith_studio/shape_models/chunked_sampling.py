@@ -22,6 +22,7 @@ from regolith_studio.shape_models.sample import sized
 from regolith_studio.shape_models.shape_features import powers
 from regolith_studio.shape_models.size_law import SizeLaw, checked_bounds
 
+# Part of what a seed means: chunks of another size would be other particles.
 CHUNK = 500
 MAX_ROUNDS = 200
 """Maximum rounds of redrawing in one chunk; then the range of sizes counts as unreachable."""
@@ -72,6 +73,7 @@ class ChunkedSampler(ABC):
         """
         check_draws(n, self.l_max)
         chunks = list(self.draw_chunks(n, seed, size_range))
+        # No particles, but with the unit and the degree of the model.
         return joined(chunks) if chunks else replace(next(self.draw_chunks(1, seed)).chosen([]), rejected=0)
 
 

@@ -27,6 +27,7 @@ STEPS = 6
 MAX_TURN = 0.3
 """Largest rotation of a step, in radians."""
 _SMALL_TURN = 1e-4
+# The first term left out is at most (l_max MAX_TURN)^17 / 17!: 4e-7 at degree 10, the highest in use.
 _TAYLOR_TERMS = 16
 
 

@@ -66,7 +66,7 @@ def _of_batch(coefficients: FloatArray) -> PrincipalAxes:
     cubes = (products[:, :, None] * u[:, None, :]).reshape(-1, 27)
     third = ((squared * squared * squared * grid.weights) @ cubes / 6).reshape(-1, 3, 3, 3)
     skews = np.einsum("nabc,nai,nbi,nci->ni", third, axes, axes, axes, optimize=True)
-    return PrincipalAxes(axes, np.sqrt(np.maximum(squares, 1e-30)), skews / volumes[:, None], volumes)
+    return PrincipalAxes(axes, np.sqrt(np.maximum(squares, _MIN_MOMENT)), skews / volumes[:, None], volumes)
 
 
 def canonical(coefficients: FloatArray) -> FloatArray:
@@ -96,12 +96,14 @@ def log_ellipsoids(directions: FloatArray, form: FloatArray, frames: FloatArray)
     rising = np.column_stack([np.zeros(len(form)), form[:, 1], form[:, 0] + form[:, 1]])
     squares = np.exp(-2 * (rising - rising.mean(axis=1, keepdims=True)))
     tensors = (frames * squares[:, None, :]) @ np.swapaxes(frames, 1, 2)
+    # On an ellipsoid 1 / r^2 = u' T u.
     return np.asarray(-0.5 * np.log(tensors.reshape(-1, 9) @ _products(directions).T))
 
 
 def forms(log_radii: FloatArray, grid: SphereGrid) -> tuple[FloatArray, FloatArray]:
     """The form (n, 2) of surfaces (n, k) by quadrature of r^5 u u, and their axes (n, 3, 3) as columns,
     the shortest first."""
+    # Ratios of axes do not depend on the unit, and fifth powers of radii in small units would underflow.
     radii = np.exp(log_radii - log_radii.mean(axis=1, keepdims=True))
     squared = radii * radii
     moments = (squared * squared * radii * grid.weights) @ _products(grid.directions)

@@ -36,8 +36,8 @@ LARGEST_CARD = 1_000_000
 LOG_FIELD, HULL_FIELD = "log_field", "hull_field"
 FIELD_DEGREE = 10
 """Of fields in ln r, unless another is asked for, as in section 3.1."""
-N_JUDGED = 1000
-JUDGED = ("equivalent_radius", "aspect_ratio", "sphericity", "convexity")
+N_EVALUATED = 1000
+EVALUATED = ("equivalent_radius", "aspect_ratio", "sphericity", "convexity")
 SPECTRUM_ALONE = N_(
     "Draws differ from their material, those of a card of cement by about 6 % in AR, 9 % in S and 4 % in "
     "V/CH (l_max = 10): the card has a power spectrum and no phases."
@@ -138,6 +138,7 @@ class MaterialCard(BaseModel):
                 n_particles=len(radii),
                 unit=sample.unit,
                 median_radius=_rounded(float(np.exp(np.log(radii).mean()))),
+                # A log-normal law has no deviation of 0, which particles of one size have.
                 log_deviation=_rounded(max(float(np.log(radii).std(ddof=1)), 1e-9)),
                 relative_amplitudes=tuple(
                     _rounded(float(value)) for value in np.sqrt(field.spectrum[1:] / (4 * np.pi))
@@ -184,7 +185,7 @@ def _evaluated_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, flo
     :mod:`~regolith_studio.shape_models.shape_features`, on a grid of directions.
     """
     fitted = HULL_FIELD_MODEL.fit(sample, HullFieldSettings(sample.l_max, "log_normal_mixture"))
-    draws = fitted.draw(N_JUDGED, 0)
+    draws = fitted.draw(N_EVALUATED, 0)
     measured = sample.star_shaped()
     tables = [
         np.column_stack([radii, np.exp(outer[:, 0]), 1 / (1 + np.exp(-outer[:, 1:]))])
@@ -195,7 +196,8 @@ def _evaluated_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, flo
     ]
     ones = [np.ones(len(table)) for table in tables]
     distances = [relative_wasserstein(*pair, *ones) for pair in zip(tables[0].T, tables[1].T, strict=True)]
-    return fitted.stored()[0], {key: _rounded(100 * far) for key, far in zip(JUDGED, distances, strict=True)}
+    evaluation = {key: _rounded(100 * far) for key, far in zip(EVALUATED, distances, strict=True)}
+    return fitted.stored()[0], evaluation
 
 
 def materials() -> Mapping[str, MaterialCard]:

@@ -85,6 +85,8 @@ class Realizations:
 
     def equivalent_radii(self) -> FloatArray:
         """Radius of the sphere with each particle's volume, shape (n,)."""
+        # r^3 has degree 3 l_max, which a grid of half of that integrates exactly; exp(3 ln r) has no highest
+        # degree.
         factor = 1.5 if self.scale == "radius" else EXPONENTIAL_DEGREE
         grid = sphere_grid(int(factor * self.l_max) + 1, self.l_max)
         volumes = expanded_volumes(self.coefficients, grid, exponential=self.scale == "log_radius")
@@ -180,6 +182,6 @@ def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> 
     if bounds is not None:
         l_max = isqrt(coefficients.shape[1]) - 1
         grid = sphere_grid(3 * l_max // 2 + 1, l_max)
-        sizes = np.cbrt(3 * np.abs(expanded_volumes(coefficients, grid)) / (4 * np.pi))
+        sizes = np.cbrt(3 * expanded_volumes(coefficients, grid) / (4 * np.pi))
         good &= (sizes >= bounds[0]) & (sizes <= bounds[1])
     return good

@@ -151,7 +151,7 @@ class Sample:
         return self.chosen(keep)
 
     def halves(self, seed: int) -> tuple[IntArray, IntArray]:
-        """Indices of two random halves: to fit on, to judge on; determined by `seed` and the length."""
+        """Indices of two random halves: to fit on, to evaluate on; determined by `seed` and the length."""
         order = np.random.default_rng(np.random.SeedSequence(seed)).permutation(len(self))
         return np.sort(order[: len(self) // 2]), np.sort(order[len(self) // 2 :])
 
@@ -225,6 +225,7 @@ def sized(shapes: FloatArray, equivalent_radii: FloatArray, scale: Scale = "log_
         return np.asarray(shapes * (equivalent_radii / present)[:, None])
     grid = sphere_grid(EXPONENTIAL_DEGREE * l_max + 1, l_max)
     rows = shapes.copy()
+    # A factor f of the radius adds ln f to ln r, and so sqrt(4 pi) ln f to c_00 alone.
     rows[:, 0] = 0.0
     present = np.log(3 * expanded_volumes(rows, grid, exponential=True) / (4 * np.pi)) / 3
     rows[:, 0] = np.sqrt(4 * np.pi) * (np.log(equivalent_radii) - present)
@@ -234,6 +235,7 @@ def sized(shapes: FloatArray, equivalent_radii: FloatArray, scale: Scale = "log_
 def directed(powers: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Random coefficients with given power at each degree (n, l_max + 1), isotropic within a degree."""
     n, length = len(powers), powers.shape[1] ** 2
+    # Vectors of normal numbers have uniform directions, whatever they are scaled to.
     rows = rng.standard_normal((n, length))
     starts = np.arange(powers.shape[1]) ** 2
     directed_powers = np.add.reduceat(rows**2, starts, axis=1)

@@ -29,6 +29,7 @@ OVERSAMPLING = 1.6
 MIN_POWER = 1e-12
 MIN_SHARE = 1e-4
 """Minimum share of the hull, and of the gap to it."""
+# Of the mean radius: a radius that is positive where it was tested may dip below zero on another grid.
 _MIN_RADIUS = 1e-3
 _BATCH = 500
 SPHERICITY = 1
@@ -104,6 +105,7 @@ def outer_features(log_radii: FloatArray, slopes: FloatArray, shares: FloatArray
     """
     grid = shape_grid(l_max).grid
     radii = np.exp(log_radii - log_radii.mean(axis=1, keepdims=True))
+    # An element of the surface is r^2 sqrt(1 + |grad ln r|^2) times its solid angle.
     volumes, areas = radii**3 @ grid.weights / 3, (radii**2 * np.sqrt(1 + slopes)) @ grid.weights
     sphericity = np.pi ** (1 / 3) * (6 * volumes) ** (2 / 3) / areas
     _, axes = forms(log_radii, grid)
@@ -159,6 +161,7 @@ def _squared_slopes(rows: FloatArray, l_max: int) -> FloatArray:
 def _slope_bases(l_max: int) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the harmonics along two tangents at the nodes, by central differences."""
     u = shape_grid(l_max).grid.directions
+    # Near the poles the cross product with z would be short.
     away = np.where(np.abs(u[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
     first = np.cross(away, u)
     first /= np.linalg.norm(first, axis=1, keepdims=True)

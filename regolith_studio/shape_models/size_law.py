@@ -93,6 +93,7 @@ class LogNormalSizes:
         logs = np.log(radii)
         n = len(logs)
         if width is None:
+            # Where half of the sizes are equal, the quartiles are, too, and say nothing of the width.
             quarter = float(np.subtract(*np.percentile(logs, [75, 25]))) / 1.34
             width = 0.9 * min(float(_deviation(logs)), quarter or np.inf) * n**-0.2
         return cls(np.full(n, 1 / n), logs, np.full(n, max(width, 1e-9)))
@@ -107,6 +108,7 @@ class LogNormalSizes:
         logs = np.log(radii)
         most = max(1, min(MAX_MODES, len(logs) // FEWEST_A_MODE))
         fits = [_modes(logs, k) for k in range(1, most + 1)]
+        # k means, k deviations and k - 1 shares.
         criterion = [(3 * k - 1) * np.log(len(logs)) - 2 * fit[1] for k, fit in enumerate(fits, start=1)]
         return fits[int(np.argmin(criterion))][0]
 
@@ -132,6 +134,7 @@ class LogNormalSizes:
         component = self._picked(mass, picks)
         standard = _truncated(below[component], above[component], shares)
         logs = self.means[component] + self.deviations[component] * standard
+        # Twice, as exp(ln r) may round to a number beyond r.
         return np.clip(np.exp(np.clip(logs, low, high)), *limits), component
 
     def _picked(self, weights: FloatArray, shares: FloatArray) -> IntArray:
@@ -180,16 +183,21 @@ class RosinRammlerSizes:
     @classmethod
     def fitted(cls, radii: FloatArray) -> "RosinRammlerSizes":
         """Maximum likelihood with each particle weighted by its volume; limits of the sample."""
+        # Over the largest radius, so that powers with the exponents of the search neither overflow nor all
+        # vanish.
         weights = (radii / radii.max()) ** 3
         weights /= weights.sum()
         logs = np.log(radii / radii.max())
 
         def score(spread: float) -> float:
+            # Minus the derivative of the likelihood by the exponent, with the likeliest scale for it
+            # inserted.
             powers = weights * np.exp(spread * logs)
             return float(powers @ logs / powers.sum() - 1 / spread - weights @ logs)
 
         spread = float(brentq(score, 1e-2, 1e3))
         scale = float(radii.max() * (weights @ np.exp(spread * logs)) ** (1 / spread))
+        # The limits must differ, also where all radii are equal.
         return cls(scale, spread, float(radii.min()), float(radii.max() * (1 + 1e-9)))
 
     def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
@@ -206,8 +214,11 @@ class RosinRammlerSizes:
     def _tabulated(self, low: float, high: float) -> tuple[FloatArray, FloatArray]:
         """ln r and the share of particles below it."""
         logs = np.linspace(np.log(low), np.log(high), _TABLE)
+        # One float inwards, as exp(ln r) may round to a number beyond r.
         logs[[0, -1]] = np.nextafter(np.log(low), np.inf), np.nextafter(np.log(high), -np.inf)
         relative = logs - np.log(self.scale)
+        # Volume per step of ln r, x^k exp(-x^k) with x = r / scale and k the spread, over x^3 gives the
+        # number.
         exponent = (self.spread - 3) * relative - np.exp(np.minimum(self.spread * relative, 700.0))
         density = np.exp(exponent - exponent.max())
         rising = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2)])
@@ -252,6 +263,7 @@ def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
 
 def _modes(logs: FloatArray, k: int) -> tuple[LogNormalSizes, float]:
     """The mixture of `k` normal laws, and its log-likelihood."""
+    # Without a lowest width a component shrinks to one particle, where the likelihood has no bound.
     floor = float(_deviation(logs)) * (NARROWEST if k > 1 else 1e-9)
     rank = np.argsort(np.argsort(logs, kind="stable"), kind="stable")
     shares = 0.9 * np.eye(k)[rank * k // len(logs)] + 0.1 / k
@@ -287,6 +299,7 @@ def _truncated(below: FloatArray, above: FloatArray, shares: FloatArray) -> Floa
     """Quantiles of the standard normal law cut to [below, above]."""
     flipped = below > 0
     low, high = np.where(flipped, -above, below), np.where(flipped, -below, above)
+    # In the upper tail ndtr is 1 to the last digit: ranges there are mirrored to the lower one.
     first, last = ndtr(low), ndtr(high)
     values = ndtri(first + shares * (last - first))
     return np.asarray(np.clip(np.where(flipped, -values, values), below, above))

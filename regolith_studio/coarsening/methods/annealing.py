@@ -19,7 +19,8 @@ from regolith_studio.messages import N_
 
 TIE_BREAK = 1e-7
 CUT_DEPTH = 0.3
-WANTED_SUCCESS, GROW, SHRINK = 0.2, 1.5, 0.9
+# The step comes to rest where one proposal in nine improves: 1.5 x .949^7.7 = 1.
+GROW, SHRINK = 1.5, 0.9**0.5
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class AnnealingMethod:
             if then is not None and changed:
                 points, now, taken = proposal, then, taken + 1
             if settings.adaptive_step:
-                factor = min(factor * (GROW if better else SHRINK**0.5), settings.step_factor)
+                factor = min(factor * (GROW if better else SHRINK), settings.step_factor)
             if now.loss < least:
                 best, least = points, now.loss
             history.append(now.loss)

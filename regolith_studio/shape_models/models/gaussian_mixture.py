@@ -100,6 +100,7 @@ class GaussianMixtureModel:
         """
         chosen = settings or MixtureSettings()
         rows = sample.truncated(chosen.l_max).coefficients
+        # The lowest deviation of a component is a share of the mean.
         scale = float(rows[:, 0].mean())
         powers = np.add.reduceat((rows / scale) ** 2, np.arange(chosen.l_max + 1) ** 2, axis=1)
         powers[:, 0] = 0.0

@@ -160,8 +160,9 @@ class HullField(SizedSampler):
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
         shapes, wanted = shape_grid(self._base), self._with_offset(numbers)
-        grid, form = shapes.grid, np.maximum(numbers[:, FORM], 0.0)
+        grid, form = shapes.grid, numbers[:, FORM]
         power = np.column_stack([np.zeros(len(wanted)), np.exp(wanted[:, POWERS])])
+        # Four normal numbers make a uniformly random rotation.
         frames = Rotation.from_quat(rng.standard_normal((len(wanted), 4))).as_matrix()
         ellipsoids = log_ellipsoids(grid.directions, form, frames)
         field = rng.standard_normal((len(wanted), (self._base + 1) ** 2))
@@ -247,6 +248,7 @@ class HullFieldModel:
                 f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
             )
         whole = cut.star_shaped()
+        # Once more: cut at the lower degree a radius may fall below zero.
         usable = whole.truncated(min(chosen.l_max, HULL_DEGREE)).star_shaped()
         table, target = features_and_target(usable.coefficients)
         mean_powers = log_shapes(usable).powers.mean(axis=0)

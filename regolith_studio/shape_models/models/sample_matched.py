@@ -94,6 +94,7 @@ class SampleMatched(SurfaceSampler):
         ratios = self.surfaces.axes.log_ratios[:, [0, 2]]
         spread = np.maximum(ratios.std(axis=0), 1e-9)
         count = min(self.settings.n_neighbours, len(ratios))
+        # Ranks as a list, or the result for one neighbour would lack an axis.
         nearest = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
         own = np.arange(len(ratios))[:, None]
         mutual = (nearest[nearest] == own[:, :, None]).any(axis=2)
