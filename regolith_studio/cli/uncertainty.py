@@ -115,7 +115,8 @@ def uncertainty(
     print_table(values_table(budget))
     typer.echo()
     print_table(steps_table(budget))
-    print_errors(budget.angle.notes if budget.angle else ())
+    notes = budget.angle.notes if budget.angle else ()
+    print_errors([note for note in (budget.descriptors.note, *notes) if note])
     raise typer.Exit(code)
 
 

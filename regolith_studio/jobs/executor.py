@@ -58,11 +58,16 @@ class Executor:
         executor._check_shared = runner.check_shared
         return executor
 
-    def results(self, jobs: Iterable[Job]) -> Generator[JobResult | None, None, None]:
-        """Results of `jobs` in their order; ``None`` whenever the caller may want to stop."""
+    def results(
+        self, jobs: Iterable[Job], follow: Callable[[int, Progress], None] | None = None
+    ) -> Generator[JobResult | None, None, None]:
+        """Results of `jobs` in their order; ``None`` whenever the caller may want to stop.
+
+        ``follow``: as for :meth:`as_completed`.
+        """
         if self.in_this_thread:
-            return (None if answer is None else answer[1] for answer in _run_one_by_one(jobs))
-        return in_order(self._open_runner(), jobs, window=2 * self.workers)
+            return (None if answer is None else answer[1] for answer in _run_one_by_one(jobs, follow))
+        return in_order(self._open_runner(), jobs, window=2 * self.workers, follow=follow)
 
     def as_completed(
         self, jobs: Iterable[Job], follow: Callable[[int, Progress], None] | None = None
@@ -177,14 +182,19 @@ class ExecutorSettings:
         return Executor.on_cluster(self.address, self.workers, files)
 
 
-def in_order(runner: Runner, jobs: Iterable[Job], window: int = 2) -> Generator[JobResult | None, None, None]:
+def in_order(
+    runner: Runner,
+    jobs: Iterable[Job],
+    window: int = 2,
+    follow: Callable[[int, Progress], None] | None = None,
+) -> Generator[JobResult | None, None, None]:
     """Results of `jobs` in their order; ``None`` while the next one is being waited for.
 
     ``window``: jobs that are submitted and whose results have not been handed on: bounds the memory.
     """
     early: dict[int, JobResult] = {}
     expected = 0
-    for answer in as_completed(runner, jobs, window, n_buffered=lambda: len(early)):
+    for answer in as_completed(runner, jobs, window, lambda: len(early), follow):
         if answer is None:
             yield None
             continue

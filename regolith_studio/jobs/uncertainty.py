@@ -1,6 +1,6 @@
 """Job for the budget of uncertainty: descriptors over a design, heaps with one step changed at a time."""
 
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from regolith_studio.dataset.build import software_versions
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.engines import ENGINES, engine_named, engine_notes
 from regolith_studio.dem.evaluation.section import NotAPileError
@@ -18,10 +19,10 @@ from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.io.own_files import json_bytes
-from regolith_studio.jobs.compile_kernels import compile_first_for
+from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, result_of
-from regolith_studio.jobs.executor import Executor, open_executor
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, result_of
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import (
@@ -32,9 +33,16 @@ from regolith_studio.jobs.repose_study import (
     study_repose,
     write_study,
 )
-from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
+from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, RepresentativesRequest
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, hash_of_particles, hash_of_rows
-from regolith_studio.jobs.uncertainty_chain import RESCANNED, Chain, GrainSample, Levels, evaluate_rows
+from regolith_studio.jobs.uncertainty_chain import (
+    RESCANNED,
+    Chain,
+    GrainSample,
+    Levels,
+    draw_levels,
+    evaluate_rows,
+)
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy
 from regolith_studio.studies.uncertainty import (
@@ -144,26 +152,44 @@ def _descriptors(
     if isinstance(chain.source, tuple):
         check_count(len(chain.source))
     yield from compile_first_for(*{method for _, method in chain.choices["method"]})
+    yield from compile_first("representatives", *["model"] * bool(chain.model))
     steps = chain.steps
     design = saltelli_rows(steps, request.base, chain.seed)
     flat = design.reshape(-1, len(steps)).tolist()
     named = [{step.key: level for step, level in zip(steps, row, strict=True)} for row in flat]
-    tasks = _tasks(named)
-    yield Started(N_("Uncertainty of descriptors"), len(named) + 1)
+    tasks, total = _tasks(named, request.base), len(named) + 1
+    yield Started(N_("Uncertainty of descriptors"), total)
     results = np.full((len(named), len(OUTPUTS)), np.nan)
-    nominal, n_grains, done, problem = np.full(len(OUTPUTS), np.nan), 0, 0, ""
+    nominal, n_grains, at, problem, message = np.full(len(OUTPUTS), np.nan), 0, 0, "", ""
     recipe = _recipe(chain, request)
+    reached: dict[int, int] = {}
+    """Rows of each task that is computed and not yet handed on."""
 
     def budget() -> UncertaintyBudget:
         shaped = results.reshape(*design.shape[:2], len(OUTPUTS))
-        found = DescriptorBudget(steps, nominal, shaped, n_grains)
+        found = DescriptorBudget(steps, nominal, shaped, n_grains, problem)
         return UncertaintyBudget(found, None, chain.not_counted, recipe)
 
+    def follow(number: int, step: Progress) -> None:
+        nonlocal message
+        reached[number], message = step.done, step.message
+
+    def evaluated(function: Any, missing: Iterable[Any]) -> Iterator[Any]:
+        number = 0
+        for result in executor.results((Job(function, (task,)) for task in missing), follow):
+            if result is not None:
+                reached.pop(number, None)
+                number += 1
+            yield None if result is None else value_of(result)
+
     answers.open(KIND, (request.base, recipe), recipe["input_sha256"])
-    mapper = answers.wrap(executor.map)
-    for at, found in enumerate(mapper(partial(evaluate_rows, chain), tasks)):
-        for number, means in found["rows"].items():
-            target = nominal if number == "-1" else results[int(number)]
+    done = 0
+    for found in answers.wrap(evaluated)(partial(evaluate_rows, chain, repr(recipe)), tasks):
+        if found is None:
+            yield Progress(done + sum(reached.values()), total, message)
+            continue
+        for name, means in found["rows"].items():
+            target = nominal if name == "-1" else results[int(name)]
             target[:] = means
         problem = problem or found["problem"]
         if at == 0:
@@ -171,16 +197,21 @@ def _descriptors(
             check_count(n_grains)
             if not found["rows"]:
                 raise RegolithError(found["problem"])
-        done += len(tasks[at])
+        done, at = done + len(tasks[at]), at + 1
         yield Partial(budget())
-        yield Progress(done, len(named) + 1, problem)
+        yield Progress(done, total, problem or message)
     return budget()
 
 
-def _tasks(rows: Sequence[Levels]) -> list[list[tuple[int, Levels]]]:
-    """The present settings as row -1, then all rows by the levels of the scan's steps."""
+def _tasks(rows: Sequence[Levels], base: int) -> list[list[tuple[int, Levels]]]:
+    """The present settings as row -1, then all rows by the levels of the scan's steps.
+
+    Rows of one point follow each other, those of the same drawn particles first among them: a point is
+    complete early, and particles are drawn once for all of its rows that have them.
+    """
     groups: dict[tuple[int, ...], list[tuple[int, Levels]]] = {}
-    for number, levels in enumerate(rows):
+    order = sorted(enumerate(rows), key=lambda row: (row[0] % base, draw_levels(row[1])))
+    for number, levels in order:
         groups.setdefault(tuple(levels.get(key, 0) for key in RESCANNED), []).append((number, levels))
     parts = [
         group[k : k + ROWS_A_TASK] for group in groups.values() for k in range(0, len(group), ROWS_A_TASK)
@@ -240,7 +271,7 @@ def _angles(
     """Run the heaps of all steps, those of the first seed first, and measure them."""
     place = folder / JOURNAL / STUDY / DATASETS
     plan, missing = _plan(chain, request)
-    datasets = yield from _datasets(chain, plan, request, place, executor)
+    datasets = yield from _datasets(chain, plan, request, place, executor, budget.recipe)
     rows = []
     for k in range(request.heaps):
         for each in plan:
@@ -333,8 +364,12 @@ def _datasets(
     request: UncertaintyRequest,
     place: Path,
     workers: int | Executor,
+    recipe: Mapping[str, Any],
 ) -> Generator[Step, None, dict[str, Path]]:
-    """A dataset for each step that changes the shapes, one for each seed of the bootstrap; others share."""
+    """A dataset for each step that changes the shapes, one for each seed of the bootstrap; others share.
+
+    Those that an interrupted run has made from the same are not made again.
+    """
     places: dict[str, Path] = {}
     jobs: list[tuple[str, Levels]] = []
     for each in plan:
@@ -343,14 +378,23 @@ def _datasets(
         elif each.levels or each.step.key == FILLING:
             jobs.append((each.dataset, each.levels))
     yield Started(N_("Datasets of the steps"), len(jobs))
-    nominal = chain.sample({})
+    said = N_("dataset of {value}: {step}")
+    samples: list[GrainSample] = []
     for number, (name, levels) in enumerate(jobs):
-        places[name] = place / name
-        sample = nominal if not set(RESCANNED) & set(levels) else None
-        for step in _dataset(sample or chain.sample(levels), levels, places[name], workers):
+        places[name], mark = place / name, place / f".{name}"
+        made_of = repr((recipe, levels, software_versions()))
+        if places[name].is_dir() and mark.exists() and mark.read_text("utf-8") == made_of:
+            continue
+        if set(RESCANNED) & set(levels):
+            yield Progress(number, len(jobs), Message(said, value=name, step=N_("grains of the scan")))
+            sample = chain.sample(levels)
+        else:
+            samples = samples or [chain.sample({})]
+            sample = samples[0]
+        for step in _dataset(sample, levels, places[name], workers):
             if isinstance(step, Progress):
-                message = Message(N_("dataset of {value}: {step}"), value=name, step=step.message)
-                yield Progress(number, len(jobs), message)
+                yield Progress(number, len(jobs), Message(said, value=name, step=step.message))
+        write_bytes(mark, made_of.encode("utf-8"))
     return places
 
 
@@ -358,9 +402,14 @@ def _dataset(sample: GrainSample, levels: Levels, place: Path, workers: int | Ex
     """Representatives of the grains at these levels as a dataset; the same grains give the same bytes."""
     chain = sample.chain
     if chain.model:
-        particles: Iterable[Particle] = sample.drawn(levels)
+        yield Progress(0, 1, N_("drawing particles"))
+        particles, described = sample.drawn_and_described(levels)
     else:
-        particles = [sample.particles[k] for k in sample.picks(levels)]
+        picks = sample.picks(levels).tolist()
+        particles, described = (
+            tuple(each[k] for k in picks) for each in (sample.particles, sample.descriptors)
+        )
+    population = MeasuredPopulation(tuple(range(len(described))), described)
     chosen = tuple(replace(each, name=f"{k:05d}-{each.name}") for k, each in enumerate(particles))
     options = DatasetOptions(
         name=place.name,
@@ -368,7 +417,7 @@ def _dataset(sample: GrainSample, levels: Levels, place: Path, workers: int | Ex
         workers=workers,
         representatives=RepresentativesRequest(chain.n_representatives),
     )
-    yield from build_dataset_folder(chosen, chain.request(levels), place, options)
+    yield from build_dataset_folder(chosen, chain.request(levels), place, options, population)
 
 
 def _angle_budget(

@@ -1,7 +1,7 @@
 """The chain from a scan or a sample to simulated polyhedra at given levels of its steps."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,11 +23,11 @@ from regolith_studio.imaging.settings import DenoiseMethod
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
-from regolith_studio.jobs.events import result_of
+from regolith_studio.jobs.events import Progress, Started, Steps, result_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import particles_of
 from regolith_studio.jobs.scan_jobs import read_all
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import radius_of
 from regolith_studio.shape_models.models import MODELS, model_settings
 from regolith_studio.shape_models.sample import Sample
@@ -259,7 +259,8 @@ class GrainSample:
     weights: FloatArray
     descriptors: tuple[Descriptors, ...]
     _polyhedra: dict[tuple[Any, ...], FloatArray] = field(default_factory=dict)
-    _fits: dict[int, ShCoefficients] = field(default_factory=dict)
+    _fits: list[ShCoefficients] = field(default_factory=list)
+    _drawn: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
     def of(cls, chain: Chain, particles: Sequence[Particle], weights: FloatArray) -> "GrainSample":
@@ -319,8 +320,7 @@ class GrainSample:
         picks = self.picks(levels)
         particles, described = self.particles, self.descriptors
         if self.chain.model:
-            particles = self.drawn(levels)
-            described = tuple(describe(each) for each in particles)
+            particles, described = self.drawn_and_described(levels)
             picks = np.arange(len(particles))
         chosen = choose_representatives([described[k] for k in picks], self.chain.n_representatives)
         rows = []
@@ -332,20 +332,31 @@ class GrainSample:
         weights = [one.weight for one in chosen.classes]
         return np.asarray(np.average(rows, axis=0, weights=weights))
 
+    def fits(self) -> Generator[Progress, None, None]:
+        """Expand the grains for the model, once for all levels; nothing where no particles are drawn."""
+        options, n = self.chain.coarsening.fit_options, len(self.particles)
+        for at in range(len(self._fits), n if self.chain.model else 0):
+            yield Progress(at, n, N_("fits of the grains"))
+            self._fits.append(radius_of(options.fit(self.particles[at].mesh, FIT_DEGREE)))
+
     def drawn(self, levels: Levels) -> tuple[Particle, ...]:
         """As many particles as grains, of the model fitted to the grains of a bootstrap sample."""
-        degree, request = self.chain.value("l_max", levels), self.chain.coarsening
-        picks = np.unique(self.picks(levels)).tolist()
-        for at in picks:
-            if at not in self._fits:
-                fit = request.fit_options.fit(self.particles[at].mesh, FIT_DEGREE)
-                self._fits[at] = radius_of(fit)
+        result_of(self.fits())
         key = self.chain.value("model", levels)
-        model = MODELS[key].fit(
-            Sample.of([self._fits[at] for at in picks]), model_settings(key, {"l_max": degree})
-        )
+        settings = model_settings(key, {"l_max": self.chain.value("l_max", levels)})
+        own = [self._fits[at] for at in np.unique(self.picks(levels)).tolist()]
+        model = MODELS[key].fit(Sample.of(own), settings)
         seed = self.chain.seed + levels.get(RESAMPLED, 0)
         return particles_of(model.draw(len(self.particles), seed))
+
+    def drawn_and_described(self, levels: Levels) -> tuple[tuple[Particle, ...], tuple[Descriptors, ...]]:
+        """The drawn particles with what the choice of representatives needs; the last ones are kept."""
+        key = draw_levels(levels)
+        if self._drawn.get("levels") != key:
+            particles = self.drawn(levels)
+            described = tuple(describe(each, NEEDED) for each in particles)
+            self._drawn.update(levels=key, particles=particles, described=described)
+        return self._drawn["particles"], self._drawn["described"]
 
     def _shape(self, particle: Particle, at: int | None, levels: Levels) -> FloatArray:
         """Area at unit volume, sphericity and aspect ratio of the polyhedron of a particle."""
@@ -374,20 +385,44 @@ def _described(particle: Particle) -> Descriptors | None:
     return found if usable else None
 
 
-def evaluate_rows(chain: Chain, rows: Sequence[tuple[int, Levels]]) -> dict[str, Any]:
-    """Means of grains and of polyhedra by the number of the row, as a document; pure and picklable.
+def draw_levels(levels: Levels) -> tuple[int, ...]:
+    """What decides which particles are drawn; -1 for all grains."""
+    return tuple(levels.get(key, -1 if key == RESAMPLED else 0) for key in (RESAMPLED, "model", "l_max"))
+
+
+_samples: dict[tuple[Any, ...], GrainSample] = {}
+"""The last sample that this process has made, for its next task."""
+
+
+def _sample_at(chain: Chain, levels: Levels, inputs: str) -> GrainSample:
+    key = (inputs, *(levels.get(step, 0) for step in RESCANNED))
+    if key not in _samples:
+        _samples.clear()
+        _samples[key] = chain.sample(levels)
+    return _samples[key]
+
+
+def evaluate_rows(chain: Chain, inputs: str, rows: Sequence[tuple[int, Levels]]) -> Steps:
+    """Means of grains and of polyhedra by the number of the row, as a document.
 
     All rows are of the same levels of the scan. A row that fails has none, and ``problem`` says why.
+
+    ``inputs``: changes when the input or a setting does.
     """
     found: dict[str, Any] = {"rows": {}, "problem": ""}
+    yield Started(N_("Uncertainty of descriptors"), len(rows))
+    yield Progress(0, len(rows), N_("descriptors of the grains"))
     try:
-        sample = chain.sample(rows[0][1])
+        sample = _sample_at(chain, rows[0][1], inputs)
+        for step in sample.fits():
+            yield Progress(0, len(rows), Message("{message}, {done}/{total}", **asdict(step)))
     except RegolithError as error:
         return found | {"problem": str(error)}
     found["n_grains"] = len(sample.particles)
     if unknown := sample.without_errors:
         found["problem"] = f"{unknown} grains are clipped, or too small for the noise, and count as measured."
-    for number, levels in rows:
+    for done, (number, levels) in enumerate(rows):
+        yield Progress(done, len(rows), N_("representatives and polyhedra"))
         try:
             found["rows"][str(number)] = sample.means(levels).tolist()
         except RegolithError as error:

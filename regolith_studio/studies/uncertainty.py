@@ -99,12 +99,14 @@ class DescriptorBudget:
     - ``nominal``: means of the present settings, in the order of :data:`OUTPUTS`.
     - ``results``: of all rows of :func:`saltelli_rows`, shape (d + 2, n, outputs); NaN where not known.
     - ``n_grains``: of the present settings.
+    - ``note``: why rows are not known, or what counts as measured; none if empty.
     """
 
     steps: tuple[ChainStep, ...]
     nominal: FloatArray
     results: FloatArray
     n_grains: int
+    note: str = ""
 
     @property
     def known(self) -> FloatArray:
@@ -375,6 +377,7 @@ def budget_document(budget: UncertaintyBudget) -> dict[str, Any]:
         "n_grains": budget.descriptors.n_grains,
         "design_points": int(budget.descriptors.known.shape[1]),
         "design_points_asked": int(budget.descriptors.results.shape[1]),
+        "note": budget.descriptors.note,
         **tables,
         "recipe": dict(budget.recipe),
     }

@@ -17,12 +17,13 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.jobs import repose_jobs, uncertainty
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.events import Partial, Steps, result_of
+from regolith_studio.jobs.events import Partial, Progress, Steps, result_of
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.uncertainty import UncertaintyRequest, measure_uncertainty, uncertainty_steps
-from regolith_studio.jobs.uncertainty_chain import Chain
+from regolith_studio.jobs.uncertainty_chain import Chain, GrainSample, evaluate_rows
 from regolith_studio.studies.figures import repose as figures
 from regolith_studio.studies.uncertainty import CONFIDENCE, KEYS, OUTPUTS
 from tests.dem.cone_engine import cone_engine, true_angle, write_figure
@@ -92,6 +93,32 @@ def test_that_the_budget_of_a_sample_is_resumed_to_the_same_bytes(
     assert document["recipe"]["input_sha256"]
     assert len(document["values"]) == len(OUTPUTS)
     assert {row["step"] for row in document["steps"]} >= {"facets", "representatives", "voxel"}
+
+
+@pytest.mark.slow
+def test_that_grains_are_fitted_once_and_drawn_once_for_rows_of_the_same_particles(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two tasks of rows that differ in their facets alone, and one of another bootstrap sample."""
+    calls: list[str] = []
+    for kind, name in ((FitOptions, "fit"), (GrainSample, "drawn")):
+
+        def counted(*given: Any, name: str = name, function: Any = getattr(kind, name)) -> Any:  # noqa: B008
+            calls.append(name)
+            return function(*given)
+
+        monkeypatch.setattr(kind, name, counted)
+    request = replace(QUICK, l_max=4)
+    chain = Chain.of(ellipsoids(20), coarsening=request, model="recombined", n_representatives=2)
+    steps = list(evaluate_rows(chain, "these", [(-1, {}), (0, {"facets": 1})]))
+    assert [str(step.message) for step in steps if isinstance(step, Progress)] == [
+        "descriptors of the grains",
+        *(f"fits of the grains, {k}/20" for k in range(20)),
+        *["representatives and polyhedra"] * 2,
+    ]
+    again = result_of(evaluate_rows(chain, "these", [(1, {"facets": 2}), (2, {"representatives": 3})]))
+    assert calls == ["fit"] * 20 + ["drawn"] * 2
+    assert np.isfinite([again["rows"]["1"], again["rows"]["2"]]).all()
 
 
 def _heaps(key: str, *task: Any) -> Steps:
