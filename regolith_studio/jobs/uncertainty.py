@@ -64,6 +64,8 @@ ROWS_A_TASK = 8
 """Rows of the design that one task evaluates: their grains are made once, and a stop loses no more."""
 TOE_FACTOR = 4 / 3
 """On the minimum height of the lower cut, by which the evaluation itself judges what the cut does."""
+OF_HEAPS = ("heaps", "case", "engine")
+"""Keys of the recipe that change no descriptor and no dataset."""
 OTHER_ENGINES = ("rapier", "mujoco", "box3d")
 
 
@@ -182,7 +184,8 @@ def _descriptors(
                 number += 1
             yield None if result is None else value_of(result)
 
-    answers.open(KIND, (request.base, recipe), recipe["input_sha256"])
+    of_rows = {key: value for key, value in recipe.items() if key not in OF_HEAPS}
+    answers.open(KIND, of_rows, recipe["input_sha256"])
     done = 0
     for found in answers.wrap(evaluated)(partial(evaluate_rows, chain, repr(recipe)), tasks):
         if found is None:
@@ -379,10 +382,11 @@ def _datasets(
             jobs.append((each.dataset, each.levels))
     yield Started(N_("Datasets of the steps"), len(jobs))
     said = N_("dataset of {value}: {step}")
+    of_shapes = {key: value for key, value in recipe.items() if key not in OF_HEAPS}
     samples: list[GrainSample] = []
     for number, (name, levels) in enumerate(jobs):
         places[name], mark = place / name, place / f".{name}"
-        made_of = repr((recipe, levels, software_versions()))
+        made_of = repr((of_shapes, levels, software_versions()))
         if places[name].is_dir() and mark.exists() and mark.read_text("utf-8") == made_of:
             continue
         if set(RESCANNED) & set(levels):

@@ -78,7 +78,7 @@ def test_that_the_budget_of_a_sample_is_resumed_to_the_same_bytes(
     assert np.isfinite(found.results).all()
     assert (found.intervals[:, 0] < found.nominal).all()
 
-    steps = uncertainty_steps(chain, SMALL, tmp_path / "twice")
+    steps = uncertainty_steps(chain, replace(SMALL, heaps=2), tmp_path / "twice")  # rows are the same
     partials = 0
     for step in steps:
         partials += isinstance(step, Partial)
