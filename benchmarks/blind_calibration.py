@@ -64,11 +64,11 @@ def main(dataset: Path, runs: Path, result: Path, number_of_set: int, engine: st
 
 
 def by_friction(sets: Mapping[str, Any]) -> dict[str, list[float]]:
-    """Calibrations in three parts of the range: how many, how many intervals hold the truth, mean width."""
+    """Calibrations with a value in parts of the range: how many, how many intervals hold it, mean width."""
     done = [case for each in sets.values() for case in each["calibrations"]]
     rows = {}
     for low, high in pairwise(PARTS):
-        part = [case for case in done if low <= case["friction"] < high]
+        part = [case for case in done if low <= case["friction"] < high and case["interval"]]
         width = float(np.mean([case["width"] for case in part]))
         rows[f"{low} to {high}"] = [len(part), sum(case["covered"] for case in part), round(width, 2)]
     return rows
@@ -76,15 +76,15 @@ def by_friction(sets: Mapping[str, Any]) -> dict[str, list[float]]:
 
 def row(folder: Path, friction: float, wanted: float, error: float) -> dict[str, Any]:
     """The numbers of one calibration."""
-    found = json.loads((folder / "calibration.json").read_text("utf-8"))
-    low, high = found["parameters"][0]["interval"]
+    found = json.loads((folder / "calibration.json").read_text("utf-8"))["parameters"][0]
+    interval = found["interval"] or []
     return {
         "friction": friction,
         "wanted_deg": round(wanted, 2),
         "error_deg": round(error, 2),
-        "interval": [round(low, 3), round(high, 3)],
-        "covered": bool(low <= friction <= high),
-        "width": round((high - low) / (0.9 * (HIGH - LOW)), 3),
+        "interval": [round(end, 3) for end in interval],
+        "covered": bool(interval) and interval[0] <= friction <= interval[1],
+        "width": round(found["relative_width"], 3),
     }
 
 

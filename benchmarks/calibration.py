@@ -1,19 +1,25 @@
 """Are the intervals of a calibration honest, and what do its runs gain? docs/calibration.md.
 
-    python -m benchmarks.calibration [CASES] [FIRST_SEED] [RESULT.json]
+    python -m benchmarks.calibration [CASES] [FIRST_SEED] [RESULT.json] [TABLES]
 
 Surrogates of heaps with a known answer: random smooth curves of the angle of repose over one parameter, with
 the noise of a heap of 1,000 particles. Runs are proposed one after the other, or equally spaced. Then three
-datasets whose angles and bulk densities differ: which one was it, and at which value of the parameter?
+datasets whose angles and bulk densities differ: which one was it, and at which value of the parameter? Then
+CASES frictions in each part of the range, hidden as in benchmarks.blind_calibration, with the curve through
+its heaps in place of heaps. TABLES (surrogates,datasets,frictions): all if omitted.
 """
 
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import binomtest
 
+from benchmarks.blind_calibration import HEAPS, HIGH, LOW, PARTS
+from benchmarks.blind_calibration import N_RUNS as BLIND_RUNS
 from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.studies.calibration import (
     CONFIDENCE,
@@ -55,8 +61,15 @@ class SurrogateCase:
         return float(high - low) / CONFIDENCE
 
 
-def main(cases: int, seed: int, result: str) -> None:
-    """Print a line for each number of runs, and write them all."""
+def main(cases: int, seed: int, result: str, tables: Sequence[str]) -> None:
+    """Print the rows of each table, and write them."""
+    for name, table in (("surrogates", surrogates), ("datasets", datasets), ("frictions", frictions)):
+        if name in tables:
+            add_result(result, name, table(cases, seed), cases=cases, first_seed=seed)
+
+
+def surrogates(cases: int, seed: int) -> Rows:
+    """Coverage and width for each number of runs."""
     rows: Rows = {}
     found = [calibrate_surrogate(seed + k) for k in range(cases)]
     for n in range(0, N_RUNS + 1, 2):
@@ -66,13 +79,30 @@ def main(cases: int, seed: int, result: str) -> None:
     _show(
         rows, f"{N_RUNS} that scatter", [calibrate_surrogate(seed + k, noise=SCATTER) for k in range(cases)]
     )
-    add_result(result, "surrogates", rows, cases=cases, first_seed=seed)
-    rows = {}
+    return rows
+
+
+def datasets(cases: int, seed: int) -> Rows:
+    """The same with a choice of a dataset; probability of the right one, how often it is above a half."""
+    rows: Rows = {}
     pairs = [calibrate_datasets(seed + k) for k in range(cases)]
     chances = np.array([chance for _, chance in pairs])
     numbers = [*_coverage([case for case, _ in pairs]), chances.mean(), (chances > 0.5).sum()]
     show_row(rows, f"{len(DATASETS)}, {N_RUNS} runs", numbers)
-    add_result(result, "datasets", rows, cases=cases, first_seed=seed)
+    return rows
+
+
+def frictions(cases: int, seed: int) -> Rows:
+    """By part of the range: calibrations, intervals that hold the friction, p-value of that, mean width."""
+    rows: Rows = {}
+    for number, (low, high) in enumerate(pairwise(PARTS)):
+        ends = (low - LOW) / (HIGH - LOW), (high - LOW) / (HIGH - LOW)
+        first = seed + 1000 * number
+        found = [calibrate_surrogate(first + k, (), BLIND_RUNS, SCATTER, ends) for k in range(cases)]
+        count = sum(case.covers(BLIND_RUNS) for case in found)
+        width = float(np.mean([case.shrinkage(BLIND_RUNS) for case in found]))
+        show_row(rows, f"{low} to {high}", [cases, count, binomtest(count, cases, CONFIDENCE).pvalue, width])
+    return rows
 
 
 def _show(rows: Rows, name: str, found: Sequence[SurrogateCase], runs: int = N_RUNS) -> None:
@@ -98,8 +128,20 @@ def random_curve(rng: np.random.Generator) -> Callable[[NDArray[np.float64]], ND
     return curve
 
 
+def heap_curve(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Degrees over the range of friction as 0 to 1, through the heaps of benchmarks.blind_calibration.
+
+    Their standard deviation about it is 1.8.
+    """
+    return np.asarray(3.6 + 29.9 * (1 - np.exp(-(LOW + (HIGH - LOW) * x) / 0.25)))
+
+
 def calibrate_surrogate(
-    seed: int, spaced: Sequence[float] = (), runs: int = N_RUNS, noise: float = NOISE
+    seed: int,
+    spaced: Sequence[float] = (),
+    runs: int = N_RUNS,
+    noise: float = NOISE,
+    part: tuple[float, float] | None = None,
 ) -> SurrogateCase:
     """Each run states :data:`NOISE` as a heap does: from seven degrees of freedom.
 
@@ -109,11 +151,16 @@ def calibrate_surrogate(
         Values of the runs, where they are not proposed.
     noise
         Standard deviation of the runs.
+    part
+        Of the range, where the curve is that of friction and the wanted angle the mean of so many heaps.
     """
     rng = np.random.default_rng(seed)
-    curve, truth = random_curve(rng), rng.uniform()
-    wanted = float(curve(np.array(truth)) + TARGET_ERROR * rng.normal())
-    target = WantedResult("angle", wanted, TARGET_ERROR, scale=5.0, noise=NOISE)
+    if part is None:
+        curve, truth, error = random_curve(rng), rng.uniform(), TARGET_ERROR
+    else:
+        curve, truth, error = heap_curve, rng.uniform(*part), noise / HEAPS**0.5
+    wanted = float(curve(np.array(truth)) + error * rng.normal())
+    target = WantedResult("angle", wanted, error, scale=5.0, noise=NOISE)
     parameter = CalibrationParameter("x", 0.0, 1.0)
     made = np.empty((0, 3))
     intervals = []
@@ -157,5 +204,5 @@ def calibrate_datasets(seed: int) -> tuple[SurrogateCase, float]:
 
 
 if __name__ == "__main__":
-    words = [*sys.argv[1:], *("100", "0", "")[len(sys.argv) - 1 :]]
-    main(int(words[0]), int(words[1]), words[2])
+    words = [*sys.argv[1:], *("100", "0", "", "surrogates,datasets,frictions")[len(sys.argv) - 1 :]]
+    main(int(words[0]), int(words[1]), words[2], words[3].split(","))
