@@ -1,70 +1,130 @@
-"""Angle of repose over the number of facets and over what is kept of the particles (docs/repose_results.md).
+"""Angle of repose over facets, what is kept of the particles, convexity and friction: docs/repose_results.md.
 
-    python -m benchmarks.shape_heaps RUNS RESULT.json [SEEDS] [PARTICLES] [COARSENINGS]
+    python -m benchmarks.shape_heaps RUNS RESULT.json [SEEDS] [PARTICLES] [CASES] [ENGINE] [WORKERS]
 
-Rapier, friction 0.8, the twelve shipped particles; by default 20 seeds, 1,000 particles and all coarsenings
-(names with commas between). Datasets and runs that are in the folder RUNS already are kept. Two runs at a
-time, of one thread each.
+The twelve shipped particles; by default 20 seeds, 1,000 particles, all shapes (names of cases with commas
+between; after @ stands another friction than 0.8), Rapier, one heap at a time. Datasets and heaps that are in
+the folder RUNS already are kept. RESULT has a row a heap, and the differences of :data:`QUESTIONS` on the
+same seeds: number of pairs, mean, ends of Student's interval of 95 %, and how many pairs would decide one
+whose interval holds 0, if it is as large as it seems.
 """
 
 import json
-import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
-from regolith_studio.dem.run_io import DOCUMENT, read_run
-from regolith_studio.resources import resource
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.dem.case import ReposeCase
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.events import Partial, result_of
+from regolith_studio.jobs.repose_jobs import ReposeRequest
+from regolith_studio.jobs.repose_study import ReposeVariant, study_repose
+from regolith_studio.readers.particles import sample_particles
+from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
+from regolith_studio.studies.uncertainty import AngleBudget, ChainStep
 
-COARSENINGS = {
-    "8": ["--facets", "8"],
-    "12": ["--facets", "12"],
-    "20": ["--facets", "20"],
-    "40": ["--facets", "40"],
-    "60": ["--facets", "60"],
-    "20 by quadrics": ["--facets", "20", "--method", "quadric"],
-    "20 with overlap": ["--facets", "20", "--preset", "overlap"],
+ALL, FRICTION = LossWeights.from_preset("all"), 0.8
+TWENTY = CoarseningRequest(ALL, 20)
+
+
+def keeping(*keys: str) -> CoarseningRequest:
+    """Twenty facets with the largest overlap that these descriptors leave."""
+    return replace(TWENTY, weights=LossWeights.of(jaccard_distance=1.0, **dict.fromkeys(keys, 1.0)))
+
+
+SHAPES = {
+    **{str(n): CoarseningRequest(ALL, n) for n in (8, 12, 20, 40, 60)},
+    "20 by quadrics": replace(TWENTY, method="quadric", weights=ALL.keeping(None)),
+    "20 with overlap": keeping(),
+    "20 with V": keeping("volume"),
+    "20 with V and AR": keeping("volume", "aspect_ratio"),
+    "20 as compounds": replace(TWENTY, method="compound"),
 }
-"""Options of each. The last two keep no descriptor: quadrics alone, and the largest overlap."""
+QUESTIONS = {
+    "V kept, not all": ("20 with V", "20"),
+    "V and AR kept, not all": ("20 with V and AR", "20"),
+    "V and AR kept, not V": ("20 with V and AR", "20 with V"),
+    "compounds, not convex": ("20 as compounds", "20"),
+    "none kept, not all": ("20 with overlap", "20"),
+    "8 facets, not 20": ("8", "20"),
+    "8 facets, not 20, friction 0.4": ("8@0.4", "20@0.4"),
+    "friction 0.8, not 0.4": ("20", "20@0.4"),
+    "friction 0.8, not 0.4, 8 facets": ("8", "8@0.4"),
+}
+"""What is changed and from what, where both have been run."""
 
 
-def main(runs: Path, result: Path, n_seeds: int, n_particles: int, chosen: list[str]) -> None:
-    """Make what is missing, write a row a run, and print the mean of each coarsening with its interval."""
-    cases = [(name, seed) for name in chosen for seed in range(1, n_seeds + 1)]
-    for name in chosen:
-        if not (dataset := runs / name).is_dir():
-            command("dataset", "build", resource("samples", "particles"), "-o", dataset, *COARSENINGS[name])
-    with ThreadPoolExecutor(2) as pool:
-        rows = list(pool.map(lambda case: row(runs, n_particles, *case), cases))
-    result.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-    for name in chosen:
-        angles = [each["angle_deg"] for each in rows if each["coarsening"] == name and each["angle_deg"]]
-        half = stats.t.ppf(0.975, len(angles) - 1) * stats.sem(angles)
-        print(f"{name}: {np.mean(angles):.2f} +- {half:.2f}, {len(angles)} heaps")
+def main(
+    runs: Path, result: Path, n_seeds: int, n_particles: int, chosen: list[str], engine: str, workers: int
+) -> None:
+    """Make what is missing, all cases of the first seed first, and write what is known after each heap."""
+    variants = []
+    for seed in range(1, n_seeds + 1):
+        for name in chosen:
+            shapes, _, friction = name.partition("@")
+            case = ReposeCase(n_particles=n_particles, seed=seed)
+            contact = replace(case.contact, static_friction=float(friction or FRICTION))
+            request = ReposeRequest(replace(case, contact=contact), engine)
+            variants.append(ReposeVariant("case", name, dataset(runs, shapes), request))
+    for step in study_repose(variants, runs, executor=workers):
+        if isinstance(step, Partial):
+            study: ReposeStudy = step.value
+            rows = [row(run) for run in study.runs]
+            content = {"engine": engine, "runs": rows, "differences": {"rows": differences(rows)}}
+            result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    for name, numbers in content["differences"]["rows"].items():
+        print(name, numbers)
 
 
-def row(runs: Path, n_particles: int, name: str, seed: int) -> dict[str, Any]:
-    """The numbers of one run."""
-    folder = runs / f"{name}-{n_particles}-{seed}"
-    if not (folder / DOCUMENT).is_file():
-        how = ["-n", n_particles, "--engine", "rapier", "--seed", seed, "--jobs", "1"]
-        command("repose", "run", runs / name, "-o", folder, *how)
-    document = read_run(folder).document
-    measured, packing = document["measurement"], document["packing"]["heap"] or {}
+def dataset(runs: Path, name: str) -> Path:
+    """The dataset of these shapes, made where it is not there."""
+    folder = runs / "datasets" / name
+    if not folder.is_dir():
+        result_of(build_dataset_folder(sample_particles(), SHAPES[name], folder, DatasetOptions()))
+    return folder
+
+
+def row(run: ReposeStudyRun) -> dict[str, Any]:
+    """The numbers of one heap."""
+    measured = run.document["measurement"] or {}
+    packing, checks = (run.document["packing"] or {}).get("heap") or {}, run.document["checks"] or {}
+    shapes, _, friction = str(run.value).partition("@")
     return {
-        "coarsening": name,
-        "particles": n_particles,
-        "seed": seed,
-        "angle_deg": rounded(measured["angle_deg"], 2),
+        "coarsening": shapes,
+        "friction": float(friction or FRICTION),
+        "particles": run.document["case"]["n_particles"],
+        "seed": run.seed,
+        "angle_deg": rounded(run.angle, 2),
         "interval_deg": [rounded(each, 2) for each in measured.get("interval_deg") or []],
-        "solid_fraction": rounded(document["checks"]["solid_fraction"], 4),
+        "solid_fraction": rounded(checks.get("solid_fraction"), 4),
         "coordination_number": rounded(packing.get("coordination_number"), 3),
-        "problems": document["checks"]["problems"],
+        "problems": checks.get("problems", [run.document["problem"]]),
     }
+
+
+def differences(heaps: Sequence[dict[str, Any]]) -> dict[str, list[float | int | None]]:
+    """By question: pairs of heaps, difference in degrees, ends of its interval, pairs that would decide."""
+    angles: dict[str, dict[int, float]] = {}
+    for heap in heaps:
+        friction = heap.get("friction", FRICTION)
+        case = heap["coarsening"] + (f"@{friction}" if friction != FRICTION else "")
+        angle = heap["angle_deg"]
+        angles.setdefault(case, {})[heap["seed"]] = np.nan if angle is None else angle
+    rows: dict[str, list[float | int | None]] = {}
+    for question, (changed, base) in QUESTIONS.items():
+        seeds = sorted(set(angles.get(changed, ())) & set(angles.get(base, ())))
+        pair = [np.array([angles[case][seed] for seed in seeds]) for case in (base, changed)]
+        step = ChainStep(question, "", (base, changed))
+        for found in AngleBudget((step,), pair[0], {(question, changed): pair[1]}).effects:
+            numbers = [round(each, 2) for each in (found.change, found.low, found.high)]
+            rows[question] = [found.n, *numbers, found.heaps_needed]
+    return rows
 
 
 def rounded(value: float | None, digits: int) -> float | None:
@@ -72,12 +132,8 @@ def rounded(value: float | None, digits: int) -> float | None:
     return None if value is None else round(value, digits)
 
 
-def command(*words: object) -> None:
-    """Run the program."""
-    subprocess.run([sys.executable, "-m", "regolith_studio", *map(str, words)], check=True)
-
-
 if __name__ == "__main__":
     given = dict(enumerate(sys.argv))
-    names = given[5].split(",") if 5 in given else list(COARSENINGS)
-    main(Path(sys.argv[1]), Path(sys.argv[2]), int(given.get(3, 20)), int(given.get(4, 1000)), names)
+    names = given[5].split(",") if given.get(5) else list(SHAPES)
+    numbers = int(given.get(3, 20)), int(given.get(4, 1000))
+    main(Path(given[1]), Path(given[2]), *numbers, names, given.get(6, "rapier"), int(given.get(7, 1)))

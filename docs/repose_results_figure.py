@@ -49,7 +49,7 @@ def draw_facets(axis: Axes) -> None:
         ("repose_shapes_5000.json", ORANGE, "5,000 particles"),
     ):
         angles: dict[int, list[float]] = {}
-        for run in results(name):
+        for run in results(name)["runs"]:
             if run["angle_deg"] is not None and run["coarsening"].isdigit():
                 angles.setdefault(int(run["coarsening"]), []).append(run["angle_deg"])
         facets = sorted(angles)
