@@ -127,10 +127,9 @@ def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) ->
     radius, between = np.exp(radii_on_icosphere(drawn, level)), np.exp(radii_between(drawn, level))
     if not np.isfinite(radius).all():
         raise GeometryError("The logarithm of a radius is too large to be a size.")
-    flat = Mesh(
-        sphere.vertices * (radius + icosphere_edges(level).chord_errors(radius, between))[:, None],
-        sphere.faces,
-    )
+    # In narrow pits vertices would pass through the origin, as in `reconstruct`.
+    lifted = np.maximum(radius + icosphere_edges(level).chord_errors(radius, between), radius / 2)
+    flat = Mesh(sphere.vertices * lifted[:, None], sphere.faces)
     grid = sphere_grid(EXPONENTIAL_DEGREE * draws.l_max + 1, draws.l_max)
     volume = expanded_volumes(drawn.values[None], grid, exponential=True)[0]
     return Mesh(flat.vertices * np.cbrt(volume / flat.volume), sphere.faces)

@@ -11,10 +11,13 @@ import pytest
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh_health import inspect
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, write_model
 from regolith_studio.shape_models.protocol import FittedModel
-from regolith_studio.shape_models.realizations import virtual_mesh
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 
 keys = pytest.mark.parametrize("key", sorted(MODELS))
@@ -55,6 +58,16 @@ def test_that_every_particle_is_a_closed_solid_with_the_volume_of_its_series(
         mesh = virtual_mesh(draws, index, level=3)
         assert inspect(mesh).sound
         assert mesh.volume == pytest.approx(4 / 3 * np.pi * radii[index] ** 3, rel=1e-9)
+
+
+def test_that_a_narrow_pit_ends_before_the_star_point() -> None:
+    directions = icosphere(2).vertices
+    at_first = harmonics(directions[:1], 20)[:, 0]
+    bump = at_first * np.exp(-((degrees(len(at_first)) / 8) ** 2))
+    draws = Realizations(-4 * bump[None] / (bump @ at_first), "log_radius", "log_field", 0)
+    outward = (virtual_mesh(draws, 0, level=2).vertices * directions).sum(axis=1)
+    assert 0 < outward[0] < 0.1 * np.median(outward)
+    assert outward.min() > 0
 
 
 @keys
