@@ -98,7 +98,7 @@ DrawDegree = Annotated[
         max=30,
         help="Degree of drawn particles; they are compared with the particles with all their degrees.",
         metavar="L",
-        show_default="all of the sample for recombined and sample_matched, 10 for the others",
+        show_default="all of the sample for recombined, sample_matched and hull_field, 10 for the others",
     ),
 ]
 Draws = Annotated[

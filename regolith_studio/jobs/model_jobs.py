@@ -50,7 +50,7 @@ class GenerationRequest:
     - ``model``: key of ``MODELS``; empty for what the source brings, or the default one.
     - ``settings``: of the model that differ from its own, as pairs.
     - ``l_max``: degree of the particles; ``None`` for that of the model's settings, where the source has it:
-      all degrees for ``recombined`` and ``sample_matched``, 10 for the others, as in section 3.1.
+      all degrees for ``recombined``, ``sample_matched`` and ``hull_field``, 10 for the others (section 3.1).
     - ``n``: how many.
     - ``seed``: of all draws.
     - ``size_range``: smallest and largest equivalent radius, micrometres.
