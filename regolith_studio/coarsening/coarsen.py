@@ -248,6 +248,8 @@ def _check(method: CoarseningMethod, weights: Any, seed: Any) -> None:
         raise InputError(f"The weights must be LossWeights, such as LossWeights.of(volume=1), got {kind}.")
     check_kept(method.key, weights)
     foreign = [key for key in LOSS_KEYS if key not in TERMS and (weights[key] or key in (weights.keep or ()))]
+    # The descents of these methods have derivatives of their own terms only; others measure by the public
+    # descriptors.
     if foreign and method.keeps_terms:
         raise InputError(
             f"The method {method.key} does not know the term {foreign[0]}; give it the weight 0, or take"

@@ -71,6 +71,7 @@ class LossFunction:
     def __init__(self, target: Target, weights: LossWeights, everything: bool = False) -> None:
         self._target = target
         self._weights = weights
+        # At 20 facets the box takes more than nine tenths of an evaluation.
         self._with_box = everything or any(weights[key] for key in BOX_KEYS)
         rays = target.rays
         self._crossings: FloatArray | None = None
@@ -100,6 +101,7 @@ class LossFunction:
             "aspect_ratio": longest / shortest,
             "convex_hull_volume": volume,
         }
+        # Descriptors that were added to the loss have no fast way.
         if others := tuple(key for key in LOSS_KEYS if key not in found):
             solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(polyhedron.normals, polyhedron.offsets))
             found |= describe(solid, others)

@@ -104,6 +104,7 @@ def fewest_facets(
         if n_facets == high:
             return _least(failed, limit)
         n_facets = min(2 * n_facets, high)
+    # Below the lowest number there is nothing to halve.
     bottom = failed[-1].n_facets if failed else low - 1
     while best.n_facets - bottom > 1:
         trial = yield from tried((best.n_facets + bottom) // 2)

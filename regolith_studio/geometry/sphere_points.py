@@ -7,6 +7,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.mesh import Mesh
 
+# 2 pi (1 - 1 / golden ratio), which simple fractions approximate worst: points never line up in spokes.
 GOLDEN_ANGLE = np.pi * (3.0 - 5.0**0.5)
 
 

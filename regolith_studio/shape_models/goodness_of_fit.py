@@ -26,6 +26,7 @@ N_STARTS = 20
 STEPS = 6
 MAX_TURN = 0.3
 """Largest rotation of a step, in radians."""
+# By central differences: at degree 10 an error of (10 x 1e-4)^2 / 6 = 2e-7, and 1e-12 by rounding.
 _SMALL_TURN = 1e-4
 # The first term left out is at most (l_max MAX_TURN)^17 / 17!: 4e-7 at degree 10, the highest in use.
 _TAYLOR_TERMS = 16

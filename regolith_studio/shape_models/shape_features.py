@@ -33,6 +33,7 @@ MIN_SHARE = 1e-4
 _MIN_RADIUS = 1e-3
 _BATCH = 500
 SPHERICITY = 1
+# By central differences: at degree 30 an error of (30 x 1e-4)^2 / 6 = 2e-6, and 1e-12 by rounding.
 _STEP = 1e-4
 
 

@@ -131,6 +131,7 @@ class AnnealingMethod:
             if settings.facet_repair:
                 proposal = _repaired(target, proposal)
             then = _judged(evaluate, proposal)
+            # Also where it is not asked, so that each iteration takes as many random numbers.
             drawn, probability = float(rng.random()), settings.acceptance_probability(k)
             lucky = drawn < probability
             better = then is not None and then.loss < now.loss
