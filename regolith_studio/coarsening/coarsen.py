@@ -94,7 +94,7 @@ def coarsen(
     weights
         Of the loss (Eq. 9); preset ``all`` where not given.
     seed
-        Of the random numbers. Neither they nor anything else tells where a particle stands in a sample.
+        Of the random numbers. Results do not depend on where a particle stands in a sample.
     settings
         The method's ``Settings``, or a mapping of those that differ from the defaults.
     fewer

@@ -93,7 +93,7 @@ class CoarseningProgress:
     centre
         The particle's centroid in its own frame, shape (3,).
     recent
-        The last steps with this one, for a listener who is not told of each.
+        The last steps with this one, for a listener that does not receive each.
     achieved, errors, jaccard_distance
         Descriptors of the polyhedron, their relative errors (Eq. 8) and Eq. 7 as it follows from the loss,
         NaN without weight; empty where the step was not measured.

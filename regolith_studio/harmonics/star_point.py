@@ -65,11 +65,11 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
     if not np.isfinite(hidden_volume(mesh, start)):
         start = inner_point(mesh)
     radius = (3 * mesh.volume / (4 * np.pi)) ** (1 / 3)
-    reach = SEARCH_RADIUS * radius
+    search_radius = SEARCH_RADIUS * radius
 
     def cost(step: FloatArray) -> float:
         length = float(np.linalg.norm(step))
-        return hidden_volume(mesh, start + step * reach) if length <= 1 else np.inf
+        return hidden_volume(mesh, start + step * search_radius) if length <= 1 else np.inf
 
     if cost(np.zeros(3)) == 0.0:
         return start
@@ -81,7 +81,7 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
             method="Nelder-Mead",
             options={"initial_simplex": simplex, "maxfev": 80, "xatol": 1e-2, "fatol": 1e-5},
         )
-    return np.asarray(start + optimum.x * reach)
+    return np.asarray(start + optimum.x * search_radius)
 
 
 def inner_point(mesh: Mesh) -> FloatArray:

@@ -139,7 +139,7 @@ def positive_rows(coefficients: FloatArray) -> BoolArray:
     """Whether each radius function, rows of shape (n, (l_max + 1)^2), is positive, shape (n,).
 
     First tested on a Gauss-Legendre grid of twice the degree; those that come near zero are tested again on
-    ``icosphere(5)`` (10,242 directions), and about the lowest of these on directions a quarter of a degree
+    ``icosphere(5)`` (10,242 directions), and about the lowest of these on directions half a degree
     apart, which is as fine as any mesh that is written.
     """
     l_max = isqrt(coefficients.shape[1]) - 1

@@ -82,7 +82,7 @@ class PchsMethod:
         simplified.simplify_to(n_facets)
         poles, _ = simplified.get_dual_mesh()  # normals over their distances from a point inside the hull
         normals = np.ascontiguousarray(poles / np.linalg.norm(poles, axis=1, keepdims=True))
-        # Where that point lies is not told, but every plane that is left still supports the hull.
+        # Where it lies is not reported, but every plane that is left still supports the hull.
         half_spaces = HalfSpaces(normals, (hull.vertices @ normals.T).max(axis=0))
         value = LossFunction(target, weights, everything=True).value(half_spaces.normals, half_spaces.offsets)
         yield MethodStep(1, 1, value, half_spaces)

@@ -114,10 +114,10 @@ class LogField(SizedSampler):
     ) -> tuple[FloatArray, dict[str, IntArray]]:
         """Fields with the pooled spectrum, or with those of parents, measured particles of like size."""
         if self.powers is not None and self.radii is not None:
-            reach = min(NEIGHBOURS_IN_SIZE, len(self.radii))
-            first = np.searchsorted(self.radii, radii) - reach // 2
-            first = np.clip(first, 0, len(self.radii) - reach)
-            parents = first + rng.integers(reach, size=len(radii))
+            count = min(NEIGHBOURS_IN_SIZE, len(self.radii))
+            first = np.searchsorted(self.radii, radii) - count // 2
+            first = np.clip(first, 0, len(self.radii) - count)
+            parents = first + rng.integers(count, size=len(radii))
             jitter = np.exp(SPECTRUM_JITTER * rng.standard_normal((len(radii), self.l_max + 1)))
             return directed(self.powers[parents] * jitter, rng), {"parents": parents}
         length = (self.l_max + 1) ** 2
