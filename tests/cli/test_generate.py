@@ -146,6 +146,7 @@ def test_that_draws_are_compared_with_their_sample(command, fit: Path, tmp_path:
     assert sum(line.startswith(("sphericity", "convexity")) for line in lines) == 4
 
 
+@pytest.mark.slow
 def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("-n", 4, "--format", "npz", "--l-max", 4)
     made = command("generate", fit, "-o", tmp_path / "a", *wanted, "--save-model", tmp_path / "m.json")
@@ -158,6 +159,7 @@ def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, t
     assert "begin with the fit of the sample" in result.err
 
 
+@pytest.mark.slow
 def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("--model", "mixture_field", "--set", "n_components=2", "--format", "npz", "--l-max", 3)
     result = command("generate", fit, "-n", 40, "-o", tmp_path / "v", *wanted, "--names", "basalt, glass")

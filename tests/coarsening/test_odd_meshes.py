@@ -49,6 +49,7 @@ def test_that_any_mesh_gives_a_result_a_reason_or_a_sentence(number: int) -> Non
     assert outcome(number, 8) in expected.get(odd_mesh(number)[0], {"met", "reason", "sentence"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "n_facets"), [(5276, 12), (6008, 5), (6164, 5)])
 def test_that_boxes_that_tie_and_near_misses_lead_to_another_start(number: int, n_facets: int) -> None:
     assert outcome(number, n_facets) == "met"

@@ -118,6 +118,7 @@ def test_that_an_error_above_a_hundred_per_cent_is_written_in_full() -> None:
     assert "misses min diameter by 123 %" in reason
 
 
+@pytest.mark.slow
 def test_that_missing_facets_are_named_beside_the_descriptor_that_is_missed() -> None:
     ball, flat = Target.of(egg(1.0, 0.99, 0.98)), Target.of(egg(1.0, 0.6, 0.3))
     for target, words in ((ball, "the most is"), (flat, "volume by 1 %")):

@@ -211,6 +211,7 @@ def test_that_yade_has_the_moments_of_turned_boxes_of_any_size(tmp_path: Path) -
         assert body["inertia"] == relative(shape * body["mass"] * body["volume"] ** (2 / 3), 1e-9)
 
 
+@pytest.mark.slow
 @needs_yade
 def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, tmp_path: Path) -> None:
     """Twelve particles in a tube that is lifted at once: they fall, stay above the plate, and spread."""

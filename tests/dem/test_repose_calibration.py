@@ -156,6 +156,7 @@ def truncated_folder(boxes: Dataset, tmp_path: Path) -> Path:
     return write_dataset(tmp_path / "truncated", replace(boxes, representatives=(only,)))
 
 
+@pytest.mark.slow
 def test_that_with_several_datasets_the_dataset_is_a_parameter(
     calibrated: Command,
     boxes_folder: Path,

@@ -164,6 +164,7 @@ def test_that_a_filling_of_other_particles_is_refused_before_the_run(
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.slow
 def test_that_a_study_lifts_one_filling_at_all_of_its_values(
     finished: Path, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

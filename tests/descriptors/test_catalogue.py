@@ -78,11 +78,16 @@ def test_that_the_angularity_of_a_cube_is_its_area_over_that_of_the_equal_ball()
     assert value("angularity", cuboid(1.0, 1.0, 1.0)) == pytest.approx(6.0 / ball, rel=1e-9)
 
 
+# Coarser where the box is needed: all boxes of a ball tie, and the search takes 5 s at 2,562 corners.
 @pytest.mark.parametrize(
-    "key", ["sphericity", "convexity", "elongation", "flatness", "roundness", "angularity"]
+    ("key", "fineness"),
+    [
+        *(("sphericity", 4), ("convexity", 4), ("roundness", 4), ("angularity", 4)),
+        *(("elongation", 3), ("flatness", 3)),
+    ],
 )
-def test_that_a_ball_has_one_for_every_measure_of_form(key: str) -> None:
-    assert value(key, icosphere(4)) == pytest.approx(1.0, abs=1e-3)
+def test_that_a_ball_has_one_for_every_measure_of_form(key: str, fineness: int) -> None:
+    assert value(key, icosphere(fineness)) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_that_the_first_rows_and_the_loss_are_those_of_the_paper() -> None:

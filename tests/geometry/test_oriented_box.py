@@ -66,6 +66,7 @@ def test_that_a_cylinder_of_many_sides_stands_in_the_square_around_them(sides: i
     assert box.volume == pytest.approx(8.0 * np.cos(np.pi / sides) ** 2, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_that_the_search_for_the_box_of_a_cylinder_of_many_sides_ends() -> None:
     sides = 1000
     angles = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)

@@ -37,6 +37,7 @@ def pool() -> Iterator[ProcessPoolRunner]:
     runner.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_that_a_batch_answers_in_the_order_of_the_questions(workers: int) -> None:
     with open_executor(workers) as executor:
@@ -123,6 +124,7 @@ def test_that_the_progress_of_jobs_reaches_who_waits_for_them(workers: int, tmp_
     assert min(heard[0], heard[1]) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_that_parts_of_long_jobs_are_named_and_results_come_in_order(workers: int, tmp_path: Path) -> None:
     story: list[tuple[int, str]] = []
@@ -217,6 +219,7 @@ def test_that_a_process_killed_from_outside_is_replaced_and_its_job_done(tmp_pat
     assert other == [Finished(25)]
 
 
+@pytest.mark.slow
 def test_that_a_waiting_job_can_be_cancelled_while_all_processes_are_busy() -> None:
     runner = ProcessPoolRunner(1)
     busy: list[Event] = []

@@ -138,6 +138,7 @@ def test_that_threads_can_share_the_child(sandbox, stl):
     assert shapes == [(12, 3)] * 8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", ["spawn", "fork"])
 def test_that_workers_of_a_process_pool_have_children_of_their_own(start, stl):
     read_mesh(stl)

@@ -44,7 +44,9 @@ def described(folder: Path) -> list[dict[str, Any]]:
 
 def test_that_tables_of_a_recipe_are_cut_at_the_degree_of_their_entry(tmp_path: Path) -> None:
     text = "\n".join(
-        f"{n} {m} {20.0 if n == 0 else 0.3 * (m == 0)} 0" for n in range(9) for m in range(-n, n + 1)
+        f"{n} {m} {20.0 if n == 0 else 1.0 if abs(m) == n == 2 else 0.3 * (m == 0)} 0"
+        for n in range(9)
+        for m in range(-n, n + 1)
     )
     (tmp_path / "grain.anm").write_text(text)
     entry = {"files": ["grain.anm"], "unit": "um"}

@@ -89,6 +89,7 @@ def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp
     assert chosen.session.dataset_folder == folder
 
 
+@pytest.mark.slow
 def test_that_building_finds_the_representatives_first(page, wait, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     page.session.adopt(grains())
@@ -250,6 +251,7 @@ def test_that_the_dataset_of_other_particles_is_neither_shown_nor_exported(chose
     assert chosen._folder is None, "the next export builds a dataset of these particles"
 
 
+@pytest.mark.slow
 def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page, tmp_path, wait) -> None:
     """15 g of spheres of 22 um and 3.1 g/cm3 are 868 million; a factor of 13 leaves 395,000."""
     sphere = icosphere(3)

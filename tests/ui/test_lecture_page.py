@@ -141,6 +141,7 @@ def test_that_the_page_fills_the_screen_and_escape_ends_it(page):
     assert not page.isFullScreen()
 
 
+@pytest.mark.slow
 def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
     before = page.annealing._lesson.steps
     page.commands()["another"]()
@@ -330,6 +331,7 @@ def test_that_plots_are_high_enough_for_their_letters_in_a_low_window(page, app)
         assert plot.legend.height() + 4 * plot.fontMetrics().height() < plot.height()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", range(3))
 def test_that_all_plots_of_a_lesson_are_seen_at_once_in_a_small_window(page, place, app):
     page.resize(1150, 650)  # what a window of 1280 x 800 leaves for it
@@ -342,6 +344,7 @@ def test_that_all_plots_of_a_lesson_are_seen_at_once_in_a_small_window(page, pla
         assert each.visibleRegion().boundingRect().size() == each.size(), each.objectName()
 
 
+@pytest.mark.slow
 def test_that_a_view_keeps_a_third_of_a_low_window(page, app):
     page.resize(960, 540)
     app.processEvents()

@@ -224,6 +224,7 @@ def test_that_a_model_of_another_package_is_fitted_shown_and_drawn(opened, monke
     assert page._drawn.draws.model == "lunar_model"
 
 
+@pytest.mark.slow
 def test_that_the_parts_of_a_mixture_are_named(page):
     take(page, rough_sample())
     page.source.model.setCurrentIndex(page.source.model.findData("mixture_field"))
@@ -241,6 +242,7 @@ def test_that_the_parts_of_a_mixture_are_named(page):
     assert page.drawing.names.text() == "basalt, glass"
 
 
+@pytest.mark.slow
 def test_that_half_of_the_sample_can_be_kept_away_from_the_model(page):
     take(page, rough_sample())
     page.source.half.setChecked(True)

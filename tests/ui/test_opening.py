@@ -77,7 +77,7 @@ def test_that_the_unit_dialog_says_what_cannot_be_opened(opening, monkeypatch, t
 def test_that_the_convention_of_tables_of_coefficients_can_be_chosen(opening, monkeypatch, tmp_path, wait):
     commands, session, _ = opening
     path = tmp_path / "table.anm"
-    path.write_text("0 0 100 0\n")
+    path.write_text("0 0 100 0\n1 0 0 0\n1 1 0 0\n2 0 14 0\n2 1 0 0\n2 2 6 0\n")
     names_before = names(session)
     shown_rows = []
 
@@ -94,8 +94,8 @@ def test_that_the_convention_of_tables_of_coefficients_can_be_chosen(opening, mo
     assert shown_rows == [True]
     origin = session.particles[-1].ref.origin
     assert origin.convention == "shtools-ortho"
-    radius = session.particles[-1].particle.mesh.bounds[1, 0]
-    assert radius == pytest.approx(100 / np.sqrt(4 * np.pi), rel=0.01)
+    mean_radius = np.linalg.norm(session.particles[-1].particle.mesh.vertices, axis=1).mean()
+    assert mean_radius == pytest.approx(100 / np.sqrt(4 * np.pi), rel=0.01)
     recipe = SessionRecipe.of(session.particles, session.choices).recipe
     assert [each.convention for each in recipe.openings] == ["auto", "shtools-ortho"]
 

@@ -73,6 +73,7 @@ def test_that_the_filter_narrows_table_plot_and_statistics(page):
     assert len(page.table.particles.rows) == 12
 
 
+@pytest.mark.slow
 def test_that_several_rows_are_ringed_in_the_plot_and_counted_alone(page):
     page.table.choose([])
     choose(page, "bead-1", "bead-2", "flat-1")
@@ -85,6 +86,7 @@ def test_that_several_rows_are_ringed_in_the_plot_and_counted_alone(page):
     assert sizes.count(13) == 3
 
 
+@pytest.mark.slow
 def test_that_a_point_of_the_plot_chooses_its_row(window, page):
     page.scatter.pointChosen.emit("angular-2", False)
     assert page.table.chosen() == ["angular-2"]
@@ -93,6 +95,7 @@ def test_that_a_point_of_the_plot_chooses_its_row(window, page):
     assert page.table.chosen() == ["angular-2", "bead-1"]
 
 
+@pytest.mark.slow
 def test_that_columns_sort_by_number(page):
     column = [each.key for each in page.table.particles.columns].index("volume")
     page.table.sortByColumn(column, Qt.SortOrder.AscendingOrder)
@@ -129,6 +132,7 @@ def ellipsoids(rng, scale, n):
     return [Particle(f"e{k}", Mesh(ball.vertices * row, ball.faces)) for k, row in enumerate(axes)]
 
 
+@pytest.mark.slow
 def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path, monkeypatch):
     """The sample is one part of fine and three of coarse grains; so is the nearest mixture, within 15 %."""
     rng = np.random.default_rng(0)
@@ -205,6 +209,7 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
     assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
 
 
+@pytest.mark.slow
 def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(window, page, wait):
     usual = QApplication.font().pointSizeF()
 

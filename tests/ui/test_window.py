@@ -164,6 +164,7 @@ def test_that_what_cannot_be_opened_is_said_without_a_question(window, tmp_path,
     assert window.session.particles == before
 
 
+@pytest.mark.slow
 def test_that_volumes_datasets_cards_and_exports_go_to_their_pages(window, tmp_path):
     window.menus.by_name["export"].trigger()
     assert window.pages.current == "dataset"
@@ -236,6 +237,7 @@ def test_that_the_sentence_of_a_listener_of_the_session_is_reported(capsys):
     assert "InputError" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     target = tmp_path / "recipe.json"
     monkeypatch.setattr(
@@ -319,6 +321,7 @@ def test_that_no_display_is_said_in_one_sentence():
         check_display({}, "linux")
 
 
+@pytest.mark.slow
 def test_that_a_full_screen_has_no_bars_but_hears_the_keys_of_the_menus(window, wait):
     window.show()
     bars = (*window.findChildren(QToolBar), window.statusBar(), window.pages.sidebar)

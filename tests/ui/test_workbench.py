@@ -246,6 +246,7 @@ def test_that_the_shipped_particles_are_called_synthetic_where_they_are_shown(wi
     assert lecture.degrees.frames["particle"].title == name
 
 
+@pytest.mark.slow
 def test_that_escape_ends_the_tour(window):
     tour = start_tour(window, window.go, window.preferences)
     QTest.keyClick(tour.next, Qt.Key.Key_Escape)
@@ -280,6 +281,7 @@ def test_that_tasks_are_listed_and_can_be_stopped_one_by_one(window):
     assert panel.idle.isVisible()
 
 
+@pytest.mark.slow
 def test_that_a_task_is_held_back_and_goes_on_from_the_list(window, wait):
     window.menus.by_name["tasks"].trigger()
     panel, session, over = window.activity.tasks, window.session, []
@@ -339,6 +341,7 @@ def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     assert all(abs(one - other) <= 8 for one, other in zip(found, wanted, strict=True))
 
 
+@pytest.mark.slow
 def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
     monkeypatch.setattr(window, "resize", lambda *_: None)  # to what a screen for tests has room for
     columns = window.findChild(QSplitter, "explore_columns")
@@ -352,6 +355,7 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
     assert columns.sizes() == standard
 
 
+@pytest.mark.slow
 def test_that_opened_particles_are_reached_by_the_arrows_at_once(window, wait):
     window.page.loss.sliders["min_diameter"].slider.setFocus()
     window.session.adopt([entry.particle for entry in window.session.particles[:2]])
@@ -403,6 +407,7 @@ def test_that_what_is_done_can_be_copied_as_command_and_as_python(window):
     compile(QApplication.clipboard().text(), "copied", "exec")
 
 
+@pytest.mark.slow
 def test_that_preferences_of_the_window_are_plain_json(window):
     window.close()
     assert json.loads(json.dumps(window.preferences.window)) == window.preferences.window

@@ -38,6 +38,7 @@ def test_that_a_compound_keeps_all_six_descriptors_where_a_convex_body_cannot(me
     assert found.jaccard_distance < 0.8 * convex.jaccard_distance
 
 
+@pytest.mark.slow
 def test_that_too_few_facets_for_two_parts_are_said_and_do_not_pass_for_the_fewest(mesh: Mesh) -> None:
     few = coarsen(mesh, 9, "compound")
     off = 100 * (1 - describe(few.mesh)["convex_hull_volume"] / describe(mesh)["convex_hull_volume"])
@@ -63,6 +64,7 @@ def test_that_the_distance_is_that_of_a_boolean_and_parts_lie_where_the_particle
     assert compound_distance(moved, solid) == pytest.approx(boolean, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_that_parts_touch_on_demand_so_that_their_volumes_add_up(mesh: Mesh) -> None:
     found = coarsen(mesh, 24, "compound", settings={"parts": 2, "joint": "touch"})
     errors = relative_errors(describe(mesh), describe(found.mesh), LOSS_KEYS)
@@ -99,6 +101,7 @@ def test_that_the_same_seed_gives_the_same_compound(mesh: Mesh) -> None:
     assert one.mesh.content_hash == two.mesh.content_hash
 
 
+@pytest.mark.slow
 def test_that_a_weight_of_zero_frees_a_descriptor(mesh: Mesh) -> None:
     weights = LossWeights.of(jaccard_distance=1.0, volume=1.0, convex_hull_volume=1.0)
     found = coarsen(mesh, 16, "compound", weights, settings={"parts": 2})

@@ -205,6 +205,7 @@ def test_that_a_concave_heap_keeps_its_section_and_both_angles(page, tmp_path, m
     assert page.sections.plot.numbers()[0][0] == "y [mm]"
 
 
+@pytest.mark.slow
 def test_that_the_plate_is_at_the_bottom_of_a_section_of_any_size(page, tmp_path, monkeypatch, wait, app):
     import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
     wait(lambda: page._measured is not None)

@@ -288,6 +288,7 @@ def test_that_several_dropped_files_are_left_to_the_window(page, tmp_path, count
     assert event.isAccepted() is taken
 
 
+@pytest.mark.slow
 def test_that_the_preview_comes_back_when_the_search_for_all_grains_is_stopped(page, part, wait):
     page.opening.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.scan is not None, SECONDS)

@@ -178,6 +178,7 @@ def test_that_a_probability_map_is_thresholded_by_its_share(page, tmp_path, wait
     assert sizes.sum() == pytest.approx(np.count_nonzero(truth), rel=0.01)
 
 
+@pytest.mark.slow
 def test_that_dark_grains_are_suspected_where_one_body_fills_the_frame(page, tmp_path, wait):
     np.save(tmp_path / "dark.npy", 255 - np.ascontiguousarray(sample_volume("grey").array[:90, :80, :70].T))
     page.opening.read(VolumeInput(tmp_path / "dark.npy", 2.3, kind="grey"))
