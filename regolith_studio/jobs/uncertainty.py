@@ -119,11 +119,15 @@ def uncertainty_steps(
 
 
 def locked_uncertainty(
-    chain: Chain, request: UncertaintyRequest, folder: Path, workers: int | Executor = 1
+    chain: Chain,
+    request: UncertaintyRequest,
+    folder: Path,
+    workers: int | Executor = 1,
+    resume: bool = False,
 ) -> Steps:
     """:func:`uncertainty_steps` in a folder that no other process writes to meanwhile."""
     with output_lock(folder):
-        return (yield from uncertainty_steps(chain, request, folder, workers))
+        return (yield from uncertainty_steps(chain, request, folder, workers, resume))
 
 
 def measure_uncertainty(

@@ -364,6 +364,10 @@
         <translation>5.</translation>
     </message>
     <message>
+        <source>95 % interval</source>
+        <translation>95 %-Intervall</translation>
+    </message>
+    <message>
         <source>95th</source>
         <translation>95.</translation>
     </message>
@@ -852,6 +856,10 @@
         <translation>Pinsel</translation>
     </message>
     <message>
+        <source>Budget of uncertainty</source>
+        <translation>Unsicherheitsbilanz</translation>
+    </message>
+    <message>
         <source>Building a dataset</source>
         <translation>Datensatz wird gebaut</translation>
     </message>
@@ -950,6 +958,10 @@
     <message>
         <source>Change</source>
         <translation>Ändern</translation>
+    </message>
+    <message>
+        <source>Change [°]</source>
+        <translation>Änderung [°]</translation>
     </message>
     <message>
         <source>Change length &amp;unit …</source>
@@ -1812,6 +1824,10 @@
         <translation>Jeder Lauf braucht einen Kern und den Speicher eines Laufs</translation>
     </message>
     <message>
+        <source>Each step is set to other levels that are equally sound; the share of a step is what it adds to the variance. Tables and figure are written to a folder, which a later run goes on from. For the steps of a scan: regolith-studio uncertainty.</source>
+        <translation>Jeder Schritt wird auf andere, gleich gute Stufen gestellt; sein Anteil ist, was er zur Varianz beiträgt. Tabellen und Bild kommen in einen Ordner, von dem ein späterer Lauf weitergeht. Für die Schritte eines Scans: regolith-studio uncertainty.</translation>
+    </message>
+    <message>
         <source>Each term alone</source>
         <translation>Jeder Term allein</translation>
     </message>
@@ -2248,6 +2264,10 @@
         <translation>Erster Durchstoß</translation>
     </message>
     <message>
+        <source>First-order share [%]</source>
+        <translation>Anteil erster Ordnung [%]</translation>
+    </message>
+    <message>
         <source>Fit</source>
         <translation>Fit</translation>
     </message>
@@ -2350,6 +2370,10 @@
     <message>
         <source>Folder of table and picture</source>
         <translation>Ordner für Tabelle und Bild</translation>
+    </message>
+    <message>
+        <source>Folder of the budget of uncertainty</source>
+        <translation>Ordner der Unsicherheitsbilanz</translation>
     </message>
     <message>
         <source>Folder of the results</source>
@@ -2578,6 +2602,14 @@
     <message>
         <source>Health of the mesh</source>
         <translation>Zustand des Netzes</translation>
+    </message>
+    <message>
+        <source>Heaps</source>
+        <translation>Haufen</translation>
+    </message>
+    <message>
+        <source>Heaps of each step</source>
+        <translation>Haufen je Schritt</translation>
     </message>
     <message>
         <source>Height above which a maximum of the distance map is a grain of its own. Increase it if grains are split, reduce it if grains stay connected.</source>
@@ -3022,6 +3054,10 @@
     <message>
         <source>Level</source>
         <translation>Niveau</translation>
+    </message>
+    <message>
+        <source>Levels</source>
+        <translation>Stufen</translation>
     </message>
     <message>
         <source>Library</source>
@@ -4272,6 +4308,14 @@
         <translation>Abspielen oder anhalten</translation>
     </message>
     <message>
+        <source>Points</source>
+        <translation>Punkte</translation>
+    </message>
+    <message>
+        <source>Points of the design</source>
+        <translation>Punkte des Versuchsplans</translation>
+    </message>
+    <message>
         <source>Points per flank</source>
         <translation>Punkte je Flanke</translation>
     </message>
@@ -4446,6 +4490,10 @@
     <message>
         <source>Quantiles</source>
         <translation>Quantile</translation>
+    </message>
+    <message>
+        <source>Quantity</source>
+        <translation>Größe</translation>
     </message>
     <message>
         <source>RMSRE [%], at least {least:g}</source>
@@ -5320,6 +5368,10 @@
         <translation>Anteil bis hierher [%]</translation>
     </message>
     <message>
+        <source>Share of the variance [%]</source>
+        <translation>Anteil an der Varianz [%]</translation>
+    </message>
+    <message>
         <source>Share of the volume</source>
         <translation>Volumenanteil</translation>
     </message>
@@ -5394,6 +5446,10 @@
     <message>
         <source>Simulated annealing is running …</source>
         <translation>Das simulierte Abkühlen läuft …</translation>
+    </message>
+    <message>
+        <source>Simulated heaps; without them the budget is of descriptors alone.</source>
+        <translation>Simulierte Haufen; ohne sie gilt die Bilanz nur für Deskriptoren.</translation>
     </message>
     <message>
         <source>Single diameters, the same for all</source>
@@ -6502,6 +6558,10 @@
     <message>
         <source>Total mass</source>
         <translation>Gesamtmasse</translation>
+    </message>
+    <message>
+        <source>Total share [%]</source>
+        <translation>Gesamtanteil [%]</translation>
     </message>
     <message>
         <source>Tour of the window</source>
@@ -7844,6 +7904,10 @@
         <translation>Rauschen der Stichprobe, Teilung {split}</translation>
     </message>
     <message>
+        <source>none</source>
+        <translation>keine</translation>
+    </message>
+    <message>
         <source>none of these</source>
         <translation>keines davon</translation>
     </message>
@@ -7854,6 +7918,10 @@
     <message>
         <source>not below {bound:.3g} {unit} (line)</source>
         <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
+    </message>
+    <message>
+        <source>not counted</source>
+        <translation>nicht gezählt</translation>
     </message>
     <message>
         <source>not decidable with so few</source>
@@ -8536,6 +8604,10 @@
         <translation>{count} Lawinen sind zu wenige für einen oberen und einen unteren Winkel: länger drehen, es sei denn, die Oberfläche fließt stetig.</translation>
     </message>
     <message>
+        <source>{count} bootstrap samples</source>
+        <translation>{count} Bootstrap-Stichproben</translation>
+    </message>
+    <message>
         <source>{count} faces are duplicated.</source>
         <translation>{count} Flächen sind doppelt vorhanden.</translation>
     </message>
@@ -8554,6 +8626,14 @@
     <message>
         <source>{count} grains</source>
         <translation>{count} Körner</translation>
+    </message>
+    <message>
+        <source>{count} heaps of each step</source>
+        <translation>{count} Haufen je Schritt</translation>
+    </message>
+    <message>
+        <source>{count} heaps would decide</source>
+        <translation>{count} Haufen würden entscheiden</translation>
     </message>
     <message>
         <source>{count} left out</source>
@@ -8676,6 +8756,14 @@
         <translation>{count} Arbeitsprozesse</translation>
     </message>
     <message>
+        <source>{descriptor} of the grains</source>
+        <translation>{descriptor} der Körner</translation>
+    </message>
+    <message>
+        <source>{descriptor} of the polyhedra</source>
+        <translation>{descriptor} der Polyeder</translation>
+    </message>
+    <message>
         <source>{drawn} draws differ from {measured} measured particles by no more than sampling noise.</source>
         <translation>{drawn} Ziehungen unterscheiden sich von {measured} gemessenen Partikeln nicht stärker als durch Stichprobenrauschen.</translation>
     </message>
@@ -8738,6 +8826,10 @@
     <message>
         <source>{keys} is reserved for typing and navigation; add Ctrl or Alt.</source>
         <translation>{keys} ist zum Tippen und Navigieren reserviert; nehmen Sie Strg oder Alt dazu.</translation>
+    </message>
+    <message>
+        <source>{known} of {rows} points</source>
+        <translation>{known} von {rows} Punkten</translation>
     </message>
     <message>
         <source>{label} cannot hold the compounds of this dataset: {why}</source>

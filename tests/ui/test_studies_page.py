@@ -6,19 +6,23 @@ import json
 import re
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from regolith_studio.errors import FileError
+from regolith_studio.jobs.uncertainty_chain import Chain
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import best_row, sufficient_facets
+from regolith_studio.studies.uncertainty import OUTPUTS
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.result_card import ResultRecord, ResultState
 from regolith_studio.ui.theme import DARK
+from tests.jobs.test_uncertainty import ellipsoids
 
 SECONDS = 170.0
 ASKED = "regolith_studio.ui.dialogs.files.FolderDialog.ask"
@@ -273,3 +277,31 @@ def test_that_a_study_that_cannot_be_written_leaves_the_earlier_files(tmp_path, 
         list(write_studies((("study", "new"),), tmp_path / "out"))
     assert (tmp_path / "out" / "table.csv").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.slow
+def test_that_a_budget_of_uncertainty_is_made_in_a_folder_and_marked_when_choices_change(
+    window, wait, tmp_path, monkeypatch
+):
+    panel = window.go("studies").budget
+    monkeypatch.setattr(ASKED, lambda *_: str(tmp_path / "budget"))
+    panel.card.button.click()
+    wait(lambda: panel.card.record.state is ResultState.FAILED, SECONDS)
+    assert "20 or more are needed" in panel.card.record.note
+    window.session.adopt(ellipsoids(24))
+    window.session.choose(target="particle")
+    usual, quick = Chain._coarsening_choices, {"method": (("quadric", "quadric"), ("again", "quadric"))}
+    monkeypatch.setattr(Chain, "_coarsening_choices", lambda chain: usual(chain) | quick)
+    panel.points.setCurrentIndex(0)
+    wait(lambda: not window.session.tasks, SECONDS)
+    panel.card.button.click()
+    wait(lambda: panel.card.record.state is ResultState.CURRENT, SECONDS)
+    assert {each.suffix for each in (tmp_path / "budget").iterdir()} >= {".csv", ".json", ".png"}
+    assert panel.card.record.made_from == "24 particles"
+    panel.quantity.setCurrentIndex(OUTPUTS.index(("grains", "volume")))
+    volume = np.mean([entry.particle.mesh.volume for entry in window.session.particles])
+    assert float(panel.card.record.values[0].replace(",", "")) == pytest.approx(volume, rel=0.005)
+    share = float(panel.table.rows.item(1, 3).text().split()[0])
+    assert (panel.table.rows.item(1, 0).text(), share) == ("Number of facets", 0.0)
+    window.session.choose(n_facets=20)
+    wait(lambda: panel.card.record.state is ResultState.STALE)

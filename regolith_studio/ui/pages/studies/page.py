@@ -20,11 +20,13 @@ from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.studies.budget import BudgetPanel
 from regolith_studio.ui.pages.studies.plots import CoarseningStudyPanel, LmaxStudyPanel
 from regolith_studio.ui.pages.studies.sweep import MAX_PARTICLES, GalleryPanel, LossSelector, SweepPanel
 from regolith_studio.ui.result_card import ResultRecord, ResultState, RunController
 from regolith_studio.ui.translation import tr, translate
 
+StudyPanel = LmaxStudyPanel | CoarseningStudyPanel | SweepPanel | GalleryPanel | BudgetPanel
 NO_PARTICLE = N_("No particle is open; open a mesh first.")
 
 
@@ -114,6 +116,7 @@ TABS = (
     N_("Weights"),
     N_("Degree (Fig. 3)"),
     N_("Polyhedra (Fig. 7)"),
+    N_("Uncertainty"),
 )
 
 
@@ -133,15 +136,17 @@ class StudiesPage(PageWidget):
         self.lmax_study = LmaxStudyPanel()
         self.coarsening_study = CoarseningStudyPanel()
         self.gallery, self.bar = GalleryPanel(), LossSelector()
+        self.budget = BudgetPanel(self._context)
         self.variations = {key: SweepPanel(key) for key in SWEEPS}
         self.variations["facets"].facetsChosen.connect(
             lambda count: self._session.choose(stop_at="facets", n_facets=count)
         )
-        self._panels: tuple[LmaxStudyPanel | CoarseningStudyPanel | SweepPanel | GalleryPanel, ...] = (
+        self._panels: tuple[StudyPanel, ...] = (
             self.coarsening_study,
             *self.variations.values(),
             self.lmax_study,
             self.gallery,
+            self.budget,
         )
         self._place()
         self.sweeps = SweepController(self._context, self.variations, self.bar)
@@ -162,6 +167,7 @@ class StudiesPage(PageWidget):
         return {
             "rows": list(self.bar.names()),
             "box": self.bar.box.value(),
+            "budget": self.budget.value(),
             "values": {key: panel.values.value() for key, panel in self.variations.items()},
         }
 
@@ -169,6 +175,7 @@ class StudiesPage(PageWidget):
         results = self._session.results
         made: list[str] = [k for k in KINDS if getattr(results, k.value) and k.value not in results.outdated]
         made += self.sweeps.current()
+        made += ["budget"] * bool(self.budget.card.record.values)
         return self.settings() | {"made": made + ["gallery"] * bool(self.gallery.value())}
 
     def resume(self, state: Mapping[str, Any]) -> None:
@@ -181,11 +188,15 @@ class StudiesPage(PageWidget):
             self.sweeps.start(key, quietly=True)
         if "gallery" in made:
             self.draw_gallery()
+        if "budget" in made and (folder := self.budget.value()["folder"]):
+            self.budget.start_in(folder)
 
     def restore(self, state: Mapping[str, Any]) -> None:
         rows, values = state.get("rows"), state.get("values")
         if isinstance(rows, list):
             self.bar.set_names(rows)
+        if isinstance(state.get("budget"), Mapping):
+            self.budget.setValue(state["budget"])
         if self.bar.box.findData(state.get("box")) >= 0:
             self.bar.box.setValue(str(state["box"]))
         for key, text in values.items() if isinstance(values, dict) else ():
@@ -308,6 +319,7 @@ class StudiesPage(PageWidget):
         self._ids = ids
         self.sweeps.forget()
         self.drawing.forget()
+        self.budget.forget()
         self.gallery.clear()
         self._drawn = None
         for panel in self._panels:
