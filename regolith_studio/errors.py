@@ -166,7 +166,7 @@ def _where_json_ends(said: str) -> str:
     found = re.search(r"line (\d+) column (\d+)", said)
     if found is None or found.groups() in (("1", "0"), ("0", "0")):
         return "it is empty, or no JSON"
-    return f"it is no proper JSON from line {found[1]}, sign {found[2]} on"
+    return f"it is no proper JSON from line {found[1]}, column {found[2]} on"
 
 
 def _place(parts: Sequence[str | int]) -> str:

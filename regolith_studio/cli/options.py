@@ -1,5 +1,6 @@
 """Options that several commands share, groups of them, and reading the particles that they name."""
 
+import errno
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -12,7 +13,7 @@ import typer
 from regolith_studio.cli.dataclass_options import option_of
 from regolith_studio.cli.terminal import print_errors, run_with_progress
 from regolith_studio.coarsening.settings import DEFAULT_PRESET, CoarseningSettings
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError, InputError, os_error_reason
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.readers.settings import ReadingSettings
@@ -144,7 +145,9 @@ def _check_folder(folder: Path) -> None:
     if not existing.is_dir():
         raise FileError(f"{existing} is a file; name a folder for the results.")
     if not os.access(existing, os.W_OK | os.X_OK):
-        raise FileError(f"The folder {existing} cannot be written (Permission denied).")
+        read_only = hasattr(os, "statvfs") and os.statvfs(existing).f_flag & os.ST_RDONLY
+        reason = os_error_reason(OSError(errno.EROFS if read_only else errno.EACCES, ""))
+        raise FileError(f"The folder {existing} cannot be written ({reason}).")
 
 
 _FOLDER = typer.Option(

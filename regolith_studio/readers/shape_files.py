@@ -106,7 +106,7 @@ def _document(path: Path, content: bytes) -> Mapping[str, Any]:
     try:
         document = json.loads(content)
     except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, sign {error.colno}"
+        place = f"line {error.lineno}, column {error.colno}"
         raise FileError(message_about(path, f"is not JSON, or is cut short: it breaks in {place}.")) from None
     except (ValueError, RecursionError):
         raise FileError(message_about(path, "is not JSON.")) from None

@@ -4,6 +4,7 @@ import errno
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -51,13 +52,19 @@ def test_that_a_place_that_cannot_be_written_is_one_sentence_before_anything_is_
     assert sorted(path.name for path in tmp_path.iterdir()) == ["recipe.json", "taken"]
 
 
-def test_that_a_place_without_permission_is_one_sentence(
-    command, grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.skipif(os.name == "nt", reason="Windows does not say what a file system allows")
+@pytest.mark.parametrize(
+    ("flags", "reason"),
+    [(0, "you are not allowed to"), (getattr(os, "ST_RDONLY", 1), "the file system is read-only")],
+)
+def test_that_a_place_that_is_not_writable_is_one_sentence(
+    command, grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flags: int, reason: str
 ) -> None:
     monkeypatch.setattr("os.access", lambda *_: False)
+    monkeypatch.setattr("os.statvfs", lambda _: SimpleNamespace(f_flag=flags))
     result = command("coarsen", grains, "-o", tmp_path / "a" / "b")
     assert result.code == 1
-    assert result.err.strip() == f"The folder {tmp_path} cannot be written (Permission denied)."
+    assert result.err.strip() == f"The folder {tmp_path} cannot be written ({reason})."
 
 
 def test_that_a_file_is_not_written_over_a_folder(command, grains: Path, tmp_path: Path) -> None:

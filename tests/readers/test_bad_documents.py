@@ -149,8 +149,8 @@ def spoilt(key: str, good: bytes) -> Iterator[Bad]:
             yield f"{entry} {number}", changed(document, entry, value), wanted
     for share in (1, 10, 50, 90, 99):
         cut = good.rstrip()[: len(good) * share // 100]
-        yield f"cut at {share}", cut, r"line \d+, sign \d+|is not JSON: .* in line \d+|is not text"
-    text = r"line 1, sign 1|is not JSON|is not text|is not UTF-8 text"
+        yield f"cut at {share}", cut, r"line \d+, column \d+|is not JSON: .* in line \d+|is not text"
+    text = r"line 1, column 1|is not JSON|is not text|is not UTF-8 text"
     yield "empty", b"", "is empty|is not JSON"
     yield "diary", b"dear diary, today I lost my fit\n", text
     yield "picture", b"\x89PNG\r\n\x1a\n" + bytes(300), text

@@ -113,7 +113,7 @@ BAD = {
     "a header alone": (b"glTF\2\0\0\0", "is cut short"),
     "version 1": (glb().replace(b"glTF\2", b"glTF\1"), "of version 1"),
     "no JSON": (glb().replace(b"JSON", b"JSOM"), "no JSON chunk"),
-    "broken JSON": (glb().replace(b'{"asset"', b'{{asset"'), "its JSON breaks in line 1, sign 2"),
+    "broken JSON": (glb().replace(b'{"asset"', b'{{asset"'), "its JSON breaks in line 1, column 2"),
     "deep JSON": (b"[" * 200_000, "its JSON nests too deeply"),
     "JSON of something else": (b'{"a": 1}', "has no “asset”"),
     "no nodes": (glb(changed(nodes=[], scenes=[{"nodes": []}])), "without triangles"),

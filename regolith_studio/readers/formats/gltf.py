@@ -78,8 +78,8 @@ def _parts(document: _Document) -> list[tuple[NDArray[np.float64], NDArray[np.in
 def _fault(error: Exception) -> str:
     """What is wrong with the description, in words."""
     match error:
-        case json.JSONDecodeError(lineno=line, colno=sign):
-            return f"its JSON breaks in line {line}, sign {sign}"
+        case json.JSONDecodeError(lineno=line, colno=column):
+            return f"its JSON breaks in line {line}, column {column}"
         case UnicodeDecodeError():
             return "its JSON is not text"
         case KeyError():
