@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
-from regolith_studio.cli.options import FACETS, Facets, Json, LMax, ReadingOptions, usage_errors
+from regolith_studio.cli.options import FACETS, Facets, Json, LMax, ReadingOptions, mesh_path, usage_errors
 from regolith_studio.cli.terminal import print_json
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, CoarseningSettings
 
@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 
 Shown = Annotated[
     list[Path] | None,
-    typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some; else the shipped sample."),
+    typer.Argument(
+        metavar="MESH...",
+        help="Mesh files, or folders that hold some; else the shipped sample.",
+        parser=mesh_path,
+    ),
 ]
 Host = Annotated[
     str, typer.Option("--host", help="Address to listen to; 0.0.0.0 for all of this machine.", metavar="IP")

@@ -129,7 +129,7 @@ def test_that_a_browser_shows_three_views_that_follow_sliders_method_and_mouse(
 def test_that_an_address_of_another_machine_is_refused_in_a_sentence(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    assert run(["serve", "--no-browser", "--host", "203.0.113.1"]) == 1
+    assert run(["serve", "sample:all", "--no-browser", "--host", "203.0.113.1"]) == 1
     assert capsys.readouterr().err.startswith("Cannot listen to 203.0.113.1, port 0 (")
 
 
