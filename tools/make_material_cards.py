@@ -151,7 +151,7 @@ def published_card(name: str, n_particles: int = N_PARTICLES, rounds: int = ROUN
         "n_particles": material.n_particles or n_particles,
         "measured": material.measured,
         "assumed": material.assumed,
-        "published": material.published,
+        "stated": material.published,
         "drawn": {key: float(f"{drawn[key]:.3f}") for key in material.published},
     }
     return MaterialCard(**{**card.model_dump(), **update})

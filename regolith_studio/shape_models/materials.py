@@ -21,7 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from regolith_studio.errors import FileError, InputError, format_validation_error, os_error_reason
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.own_files import json_bytes
-from regolith_studio.messages import N_, Message, Number
+from regolith_studio.messages import N_, Message, Number, join_messages
 from regolith_studio.resources import resource
 from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein
 from regolith_studio.shape_models.models.hull_field import DEGREES, HullField, HullFieldSettings
@@ -71,17 +71,18 @@ class MaterialCard(BaseModel):
 
     measured: tuple[str, ...] = Field(default=(), description="What is measured of the material.")
     assumed: tuple[str, ...] = Field(default=(), description="What is assumed, as it is not known.")
-    published: dict[str, tuple[float, float]] = Field(
-        default_factory=dict, description="Mean and its spread by key of the catalogue, or S/L."
+    stated: dict[str, tuple[float, float]] = Field(
+        default_factory=dict,
+        description="Mean, published or of the sample, and its spread by key of the catalogue, or S/L.",
     )
     drawn: dict[str, float] = Field(default_factory=dict, description="Means of draws, by the same keys.")
 
     @property
     def missed(self) -> str:
-        """A sentence on the published means that draws miss by more than their spread; empty if none is."""
+        """A sentence on the stated means that draws miss by more than their spread; empty if none is."""
         missed = [
-            f"{key} = {self.drawn[key]:.3g} (published {mean:g} ± {spread:g})"
-            for key, (mean, spread) in self.published.items()
+            f"{key} = {self.drawn[key]:.4g} (stated {mean:g} ± {spread:g})"
+            for key, (mean, spread) in self.stated.items()
             if key in self.drawn and abs(self.drawn[key] - mean) > spread
         ]
         sentence = N_("The card cannot be met within its own spread; draws have {means}.")
@@ -99,21 +100,19 @@ class MaterialCard(BaseModel):
 
     @property
     def evaluated(self) -> str:
-        """A sentence with the evaluation, or on what a spectrum alone lacks; empty for other hull fields.
-
-        The numbers on spectra are those of ``benchmarks/cards.py``.
-        """
+        """What the evaluation says and which means are missed, or what a spectrum alone lacks."""
         if self.hull_field is None:
             return SPECTRUM_ALONE
         if self.evaluation is None:
             return self.missed
-        return Message(
+        differs = Message(
             N_(
                 "Draws differ from the sample of the card by {equivalent_radius} % in r_eq, {aspect_ratio} % "
                 "in AR, {sphericity} % in S and {convexity} % in V/CH (Wasserstein distance over the mean)."
             ),
             **{key: Number(far, ".2g") for key, far in self.evaluation.items()},
         )
+        return join_messages([each for each in (differs, self.missed) if each], " ")
 
     @classmethod
     def of(cls, sample: Sample, name: str, label: str, origin: str, l_max: int | None = None) -> Self:
@@ -127,9 +126,7 @@ class MaterialCard(BaseModel):
         settings = LogFieldSettings(degree, "pooled", "log_normal", size_dependent=False)
         field = LogFieldModel().fit(sample, settings)
         radii = sample.star_shaped().equivalent_radii
-        hull, evaluation = None, None
-        if degree >= DEGREES[0]:
-            hull, evaluation = _evaluated_hull_field(sample.truncated(degree))
+        hull = _evaluated_hull_field(sample.truncated(degree)) if degree >= DEGREES[0] else {}
         try:
             return cls(
                 name=name,
@@ -143,8 +140,7 @@ class MaterialCard(BaseModel):
                 relative_amplitudes=tuple(
                     _rounded(float(value)) for value in np.sqrt(field.spectrum[1:] / (4 * np.pi))
                 ),
-                hull_field=hull,
-                evaluation=evaluation,
+                **hull,
             )
         except ValidationError as error:
             raise InputError(
@@ -178,10 +174,11 @@ class MaterialCard(BaseModel):
         return LogField(4 * np.pi * amplitudes**2, sizes, self.unit, self.median_radius)
 
 
-def _evaluated_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, float]]:
-    """Numbers of the hull field of a sample, and the distances of its draws from the sample in percent.
+def _evaluated_hull_field(sample: Sample) -> dict[str, Any]:
+    """Fields of a card: the hull field of a sample, and how far its draws are from the sample.
 
-    Aspect ratio, sphericity and share of the hull are the outer features of
+    The spread of a mean is what 95 of 100 samples of these sizes would have between their means and that of
+    their draws. Aspect ratio, sphericity and share of the hull are the outer features of
     :mod:`~regolith_studio.shape_models.shape_features`, on a grid of directions.
     """
     fitted = HULL_FIELD_MODEL.fit(sample, HullFieldSettings(sample.l_max, "log_normal_mixture"))
@@ -196,8 +193,14 @@ def _evaluated_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, flo
     ]
     ones = [np.ones(len(table)) for table in tables]
     distances = [relative_wasserstein(*pair, *ones) for pair in zip(tables[0].T, tables[1].T, strict=True)]
-    evaluation = {key: _rounded(100 * far) for key, far in zip(EVALUATED, distances, strict=True)}
-    return fitted.stored()[0], evaluation
+    means, drawn = (table.mean(axis=0) for table in tables)
+    spreads = 1.96 * np.sqrt(sum(table.var(axis=0, ddof=1) / len(table) for table in tables))
+    return {
+        "hull_field": fitted.stored()[0],
+        "evaluation": {key: _rounded(100 * far) for key, far in zip(EVALUATED, distances, strict=True)},
+        "stated": {k: (_rounded(m, 4), _rounded(s)) for k, m, s in zip(EVALUATED, means, spreads, strict=True)},
+        "drawn": {key: _rounded(mean, 4) for key, mean in zip(EVALUATED, drawn, strict=True)},
+    }
 
 
 def materials() -> Mapping[str, MaterialCard]:
@@ -243,5 +246,5 @@ def write_card(card: MaterialCard, path: Path) -> Path:
     return path
 
 
-def _rounded(value: float) -> float:
-    return float(f"{value:.3g}")
+def _rounded(value: float, digits: int = 3) -> float:
+    return float(f"{value:.{digits}g}")

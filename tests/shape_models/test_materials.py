@@ -76,7 +76,7 @@ def test_that_the_tool_makes_a_card_with_the_ratios_that_it_aims_at() -> None:
     assert card.hull_field is not None
     assert card.hull_field["sizes"] == size_law(*MATERIALS["lunar_soil"].sizes).stored()
     assert card.evaluation is None
-    assert set(card.drawn) == set(card.published) == {"elongation", "flatness", "S/L"}
+    assert set(card.drawn) == set(card.stated) == {"elongation", "flatness", "S/L"}
 
 
 @pytest.mark.parametrize(("name", "size", "share"), [("chang_e_5", 57.5, 0.5), ("chang_e_6", 48.4, 0.6)])
@@ -96,14 +96,14 @@ def test_that_cards_say_what_is_measured_what_is_assumed_and_what_they_miss() ->
     for card in cards:
         assert card.measured
         assert card.assumed
-        assert card.published.keys() == card.drawn.keys()
-        missed = [k for k, (mean, spread) in card.published.items() if abs(card.drawn[k] - mean) > spread]
+        assert card.stated.keys() == card.drawn.keys()
+        missed = [k for k, (mean, spread) in card.stated.items() if abs(card.drawn[k] - mean) > spread]
         assert ("cannot be met within its own spread" in card.evaluated) == bool(missed)
         assert all(f"{key} = " in card.evaluated for key in missed)
     assert materials()["lunar_soil"].evaluated == ""
     drawn = {"flatness": 0.6}
     worse = materials()["lunar_soil"].model_copy(update={"drawn": drawn})
-    assert "flatness = 0.6 (published 0.77 ± 0.008)" in worse.evaluated
+    assert "flatness = 0.6 (stated 0.77 ± 0.008)" in worse.evaluated
 
 
 @pytest.mark.slow
@@ -142,6 +142,11 @@ def test_that_the_card_of_a_sample_draws_its_shapes_and_says_how_well() -> None:
     assert card.evaluation is not None
     assert card.evaluation["convexity"] < 2.0
     assert card.evaluation["aspect_ratio"] < 6.0
+    assert card.stated["equivalent_radius"][0] == pytest.approx(sample.equivalent_radii.mean(), rel=0.002)
+    assert not card.missed
+    other = card.model_copy(update={"drawn": {"sphericity": 0.5}})
+    assert other.evaluated == f"{card.evaluated} {other.missed}"
+    assert "sphericity = 0.5 (stated " in other.missed
     draws = card.model(6).draw(400, 1)
     axes = np.exp(np.abs(principal_axes(np.stack([draws.particle(i).values for i in range(400)])).log_ratios))
     measured = np.exp(np.abs(principal_axes(rows).log_ratios))
