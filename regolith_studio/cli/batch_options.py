@@ -59,7 +59,7 @@ def chosen_executor(runner: str, jobs: int, address: str, tls: Path | None) -> "
 
 
 MOST_IN_MEMORY = 2000
-"""Members of an archive that are read into memory together."""
+"""Members of archives that are read into memory together; coarsening goes to the disk from here on."""
 _MOST_LINES = 20
 """Problems that are printed, ``failed.csv`` has all; and notes, ``--json`` has all."""
 
@@ -76,10 +76,13 @@ class BatchOptions:
     tls: Tls = None
 
     def asked(self, paths: Sequence[Path]) -> bool:
-        """Whether an archive is among the paths, or an option needs a run that goes to the disk."""
-        from regolith_studio.readers.archives import archive_of, is_archive
+        """Whether there are archives or very many files, or an option needs a run that goes to the disk."""
+        from regolith_studio.readers.particles import find_files
 
-        return self.resume or self.runner != "processes" or any(is_archive(p) or archive_of(p) for p in paths)
+        if self.resume or self.runner != "processes":
+            return True
+        files = find_files(paths, [])
+        return len(files) > MOST_IN_MEMORY or any(file.member for file in files)
 
     def run(
         self,
@@ -128,14 +131,10 @@ def print_notes(notes: Sequence[str]) -> None:
 
 def check_fits_memory(paths: Sequence[Path]) -> None:
     """Refuse to hold all meshes of a large archive in memory."""
-    from regolith_studio.readers.archives import archive_content, is_archive
+    from regolith_studio.readers.particles import find_files
 
     for path in paths:
-        if (
-            is_archive(path)
-            and path.is_file()
-            and (count := len(archive_content(path).members)) > MOST_IN_MEMORY
-        ):
+        if (count := sum(file.member is not None for file in find_files([path], []))) > MOST_IN_MEMORY:
             raise typer.BadParameter(
                 f"{path.name} holds {count:,} meshes, and at most {MOST_IN_MEMORY:,} are read into memory: "
                 "use describe --output, coarsen, or dataset build --by-group."

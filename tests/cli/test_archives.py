@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 import zipfile
 from pathlib import Path
 
@@ -60,6 +61,19 @@ def test_that_a_large_archive_needs_a_folder(command, library, monkeypatch):
     result = command("describe", library)
     assert result.code == 2
     assert "JSC.zip holds 6 meshes, and at most 5 are read into memory" in " ".join(result.err.split())
+
+
+def test_that_many_files_and_archives_in_a_folder_are_coarsened_one_by_one(
+    command, library, grains, tmp_path, monkeypatch
+):
+    options = ("--method", "quadric", "--facets", "12")
+    (tmp_path / "in").mkdir()
+    shutil.copy(library, tmp_path / "in")
+    command("coarsen", tmp_path / "in", "-o", tmp_path / "archives", *options)
+    assert len(list((tmp_path / "archives" / "meshes").glob("*.stl"))) == 5
+    monkeypatch.setattr("regolith_studio.cli.batch_options.MOST_IN_MEMORY", 2)
+    command("coarsen", grains, "-o", tmp_path / "files", *options)
+    assert (tmp_path / "files" / "meshes" / "grain-a.stl").is_file()
 
 
 def test_that_a_cluster_needs_a_folder_too(command, library):
