@@ -349,7 +349,8 @@ def _draw_shares(axis: Axes, descriptors: DescriptorBudget, key: str) -> None:
     value, (low, high) = descriptors.nominal[k], descriptors.intervals[k]
     unit = {"um^2": " µm²", "um^3": " µm³"}.get(UNITS.get(key, ""), "")
     symbol = with_subscript(CATALOGUE[key].symbol)
-    axis.set_title(f"{symbol} = {value:.3g}{unit}\n{low:.3g} to {high:.3g}", fontsize=9)
+    numbers = [f"{float(f'{each:.3g}'):,.9g}" for each in (value, low, high)]  # 129,000 in place of 1.29e+05
+    axis.set_title(f"{symbol} = {numbers[0]}{unit}\n{numbers[1]} to {numbers[2]}", fontsize=9)
     places = np.arange(len(descriptors.steps))
     if (shares := descriptors.shares) is not None:
         first, total = 100 * shares[0][k], 100 * shares[1][k]
