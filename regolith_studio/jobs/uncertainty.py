@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from regolith_studio.dataset.build import software_versions
+from regolith_studio.dataset.folder_io import dataset_hash
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.engines import ENGINES, engine_named, engine_notes
 from regolith_studio.dem.evaluation.section import NotAPileError
@@ -279,9 +280,13 @@ def _angles(
     place = folder / JOURNAL / STUDY / DATASETS
     plan, missing = _plan(chain, request)
     datasets = yield from _datasets(chain, plan, request, place, executor, budget.recipe)
+    nominal = dataset_hash(datasets[FILLING])
+    same = [each for each in plan if each.levels and dataset_hash(datasets[each.dataset]) == nominal]
     rows = []
     for k in range(request.heaps):
         for each in plan:
+            if each in same:
+                continue
             dataset = datasets[f"{RESAMPLED}-{k}" if each.step.key == RESAMPLED else each.dataset]
             run = replace(each.request, case=replace(each.request.case, seed=request.repose.case.seed + k))
             rows.append(ReposeVariant(each.step.key, each.level, dataset, run))
@@ -290,7 +295,7 @@ def _angles(
 
     def angle(study: ReposeStudy) -> UncertaintyBudget:
         return replace(
-            budget, angle=_angle_budget(plan, study, request, folder, notes), not_counted=not_counted
+            budget, angle=_angle_budget(plan, same, study, request, folder, notes), not_counted=not_counted
         )
 
     study = ReposeStudy(())
@@ -420,7 +425,7 @@ def _dataset(sample: GrainSample, levels: Levels, place: Path, workers: int | Ex
     population = MeasuredPopulation(tuple(range(len(described))), described)
     chosen = tuple(replace(each, name=f"{k:05d}-{each.name}") for k, each in enumerate(particles))
     options = DatasetOptions(
-        name=place.name,
+        name=KIND,
         overwrite=True,
         workers=workers,
         representatives=RepresentativesRequest(chain.n_representatives),
@@ -430,12 +435,16 @@ def _dataset(sample: GrainSample, levels: Levels, place: Path, workers: int | Ex
 
 def _angle_budget(
     plan: Sequence[_AngleStep],
+    same: Sequence[_AngleStep],
     study: ReposeStudy,
     request: UncertaintyRequest,
     folder: Path,
     notes: tuple[str, ...],
 ) -> AngleBudget:
-    """The angles of the runs by level and seed, and those of the present settings evaluated otherwise."""
+    """The angles of the runs by level and seed, and those of the present settings evaluated otherwise.
+
+    ``same``: levels that give the dataset of the present settings, whose heaps are theirs too.
+    """
     first = request.repose.case.seed
     angles = {(each.step.key, each.level): np.full(request.heaps, np.nan) for each in plan}
     evaluated = np.full(request.heaps, np.nan)
@@ -448,6 +457,7 @@ def _angle_budget(
     toes = tuple(f"lower cut at {each.toe:g} d or more" for each in (settings, other))
     step = ChainStep("evaluation", N_("Evaluation"), toes)
     nominal = angles.pop((FILLING, plan[0].level))
+    angles |= {(each.step.key, each.level): nominal for each in same}
     steps = dict.fromkeys(each.step for each in plan[1:])
     return AngleBudget((*steps, step), nominal, {**angles, (step.key, toes[1]): evaluated}, notes)
 

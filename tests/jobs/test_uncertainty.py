@@ -151,6 +151,8 @@ def test_that_only_the_step_that_moves_the_angle_has_a_share_of_it(
     variances = angle.step_variances()
     assert [key for key, variance in variances.items() if variance > 0.01] == ["engine"]
     assert effects["time_step"].change == 0.0  # the same heaps
+    assert effects["method"].change == 0.0  # the same polyhedra, whose heaps are not run again
+    assert not [each.name for each in tmp_path.iterdir() if each.name.startswith("method")]
     assert angle.variance == pytest.approx(angle.filling_variance + variances["engine"], rel=0.01)
     assert any("rapier" in note.lower() for note in angle.notes)
     document = json.loads((tmp_path / "uncertainty.json").read_text())
