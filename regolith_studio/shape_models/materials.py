@@ -198,7 +198,9 @@ def _evaluated_hull_field(sample: Sample) -> dict[str, Any]:
     return {
         "hull_field": fitted.stored()[0],
         "evaluation": {key: _rounded(100 * far) for key, far in zip(EVALUATED, distances, strict=True)},
-        "stated": {k: (_rounded(m, 4), _rounded(s)) for k, m, s in zip(EVALUATED, means, spreads, strict=True)},
+        "stated": {
+            k: (_rounded(m, 4), _rounded(s)) for k, m, s in zip(EVALUATED, means, spreads, strict=True)
+        },
         "drawn": {key: _rounded(mean, 4) for key, mean in zip(EVALUATED, drawn, strict=True)},
     }
 
