@@ -38,10 +38,15 @@ def contour(values: NDArray[Any], level: float, spacing: Sequence[float]) -> Mes
     return mesh
 
 
+def body_at_half(share: NDArray[np.float32]) -> BoolArray:
+    """The largest body of voxels with a share of one half and more, with what it encloses."""
+    body, _ = largest_component(np.ascontiguousarray(share >= 0.5))
+    return pores_filled(body)
+
+
 def body_contour(share: NDArray[np.float32]) -> Mesh:
     """Contour at one half of the largest body, without what it encloses."""
-    body, _ = largest_component(np.ascontiguousarray(share >= 0.5))
-    body = pores_filled(body)
+    body = body_at_half(share)
     # Filled pores and other bodies go to the other side of the level; not onto it, where marching cubes would
     # put several corners of a triangle into one place.
     one = np.where(body, np.maximum(share, 0.501), np.minimum(share, 0.499))

@@ -17,7 +17,7 @@ from scipy.special import ndtr
 
 from regolith_studio.geometry.arrays import BoolArray, IntArray
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.contours import MAX_DEPTH, body_contour, depth
+from regolith_studio.imaging.contours import MAX_DEPTH, body_at_half, body_contour, depth
 
 Floats = NDArray[np.float32]
 
@@ -35,6 +35,9 @@ _MIN_CONTRAST = 0.3
 """Share of the contrast that every place must have."""
 _FIRST_SHELL = (1.5, 3.5)
 """Depth in voxels within a mask at which the grey value of its grain is first looked for."""
+_MIN_EDGE, _MAX_BEYOND, _MIN_RISE = 0.45, 0.3, 2.05
+"""Of a mask that reaches beyond its grain: largest brightness of its outermost voxels over the level, largest
+of those just outside over them, and least of the next ones within over them."""
 _CHANGE, _ROUNDS, _ROUNDS_WITH_CORE = 0.04, 3, 9
 """Change of the level in the shell, as a share of it, from which on the surface is looked for again, and how
 often at most, also where a core lies just below it: its brightness puts the first surface far off."""
@@ -108,7 +111,7 @@ def grain_shares(
         return "too little background lies about it"
     background = values[beyond]
     # Plates and needles have no voxel at the usual depth: their deepest ones count.
-    shell = (inside > min(_FIRST_SHELL[0], float(inside.max()) - 0.5)) & (inside <= _FIRST_SHELL[1])
+    shell = _first_shell(inside)
     lift = float(np.median(values[shell]) - np.median(background))
     # 1.4826: standard deviation of a Gaussian in median absolute deviations, which debris hardly changes.
     noise = 1.4826 * float(np.median(np.abs(background - np.median(background))))
@@ -116,6 +119,12 @@ def grain_shares(
         return "it is hardly brighter or darker than its surroundings"
     above = (values - _local_mean(values, beyond & _usual(values, background))) * np.float32(np.sign(lift))
     level = _local_mean(above, shell)
+    if _reaches_beyond(above, level, inside, outside):
+        # The shell of such a mask holds the blurred edge, which must not set the level.
+        body = body_at_half(_smooth_share(above / level, others)) & (inside > 0.0)
+        inside, outside = depth(body), depth(~body)
+        shell = _first_shell(inside)
+        level = _local_mean(above, shell)
     if (level[shell] < _MIN_CONTRAST * abs(lift)).any():
         return "it is in part hardly brighter or darker than its surroundings"
     # Only the shell was checked; elsewhere a level near 0 would make shares without limit.
@@ -154,7 +163,7 @@ def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Fl
     """Contrast of full grain about each voxel from a first estimate of it, which voxels are full, and what a
     core adds in each; or why nothing of it is known beyond the estimate, if that is far off."""
     body, share = grain.inside > 0.0, np.asarray(grain.above / level, np.float32)
-    smooth = ndimage.gaussian_filter(np.where(grain.others, np.float32(0.0), share), PRESMOOTHING)
+    smooth = _smooth_share(share, grain.others)
     surface = body_contour(smooth)
     depths = _depths(body, surface)
     hollow = body & ((depths == 0.0) | (depths > CONTACT)) & (grain.inside > 1.0)
@@ -180,6 +189,32 @@ def _level_and_full(grain: _Grain, level: Floats) -> tuple[Floats, BoolArray, Fl
     level, begin, core = rim_level
     full = body & ((depths > begin) | (grain.inside > RIM))
     return level, full if from_pore is None else full | (body & (from_pore < depths)), core
+
+
+def _first_shell(inside: Floats) -> BoolArray:
+    return (inside > min(_FIRST_SHELL[0], float(inside.max()) - 0.5)) & (inside <= _FIRST_SHELL[1])
+
+
+def _reaches_beyond(above: Floats, level: Floats, inside: Floats, outside: Floats) -> bool:
+    """Whether a mask's edge lies outside of its grain's, as where its threshold is low for a bright grain.
+
+    The edge over a bright core is as dim beside the core, but just outside of it the grain goes on.
+    """
+    edge = (inside > 0.0) & (inside <= 1.0)
+    within, beyond = (inside > 1.0) & (inside <= 2.0), (outside > 0.0) & (outside <= 1.0)
+    if not within.any():
+        return False
+    brightness = float(above[edge].mean())
+    return bool(
+        brightness < _MIN_EDGE * level[edge].mean()
+        and above[beyond].mean() < _MAX_BEYOND * brightness
+        and above[within].mean() > _MIN_RISE * brightness
+    )
+
+
+def _smooth_share(share: Floats, others: BoolArray) -> Floats:
+    """Shares before a contour, without other grains."""
+    return np.asarray(ndimage.gaussian_filter(np.where(others, np.float32(0.0), share), PRESMOOTHING))
 
 
 def _depths(body: BoolArray, surface: Mesh) -> Floats:
