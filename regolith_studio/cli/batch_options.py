@@ -96,6 +96,7 @@ class BatchOptions:
     ) -> None:
         """Work on one particle after the other with the results on the disk, print what was written, end."""
         from regolith_studio.readers.coefficient_tables import table_convention
+        from regolith_studio.readers.error_messages import plural
         from regolith_studio.readers.settings import unit_factor
         from regolith_studio.session.recipe import FilesEntry, Recipe
         from regolith_studio.session.run_recipe import run_recipe
@@ -119,7 +120,8 @@ class BatchOptions:
             lists = {"problems": done.problems, "notes": done.notes}
             print_json({"folder": str(output), **counts, **lists})
         else:
-            typer.echo(f"{len(done.items.members):,} particles, {len(done.problems):,} problems in {output}")
+            totals = plural(len(done.items.members), "particle"), plural(len(done.problems), "problem")
+            typer.echo(f"{', '.join(totals)} in {output}")
         raise typer.Exit(1 if done.problems else 0)
 
 

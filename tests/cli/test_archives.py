@@ -42,6 +42,7 @@ def test_that_an_archive_is_described_into_a_folder_and_resumed(command, library
     result = command("describe", library, "-o", output, "--chords")
     assert result.code == 1
     assert "nothing.stl is empty: it has no bytes at all." in result.err
+    assert f"6 particles, 1 problem in {output}" in " ".join(result.out.split())
     table = rows(output / "descriptors.csv")
     assert [row["name"] for row in table] == NAMES
     assert [row["group"] for row in table] == ["75-300"] * 2 + ["75m"] * 3
