@@ -16,6 +16,10 @@ _WIDEST_SHARE = 0.28
 """Of the picture's width that the scale bar takes at most."""
 
 
+LABEL_SIZE = 11
+"""Font size of the numbers of a colour scale."""
+
+
 def bar_length(picture_width: float) -> float:
     """The longest of 1, 2, 5, 10, ... that fits into its share of the picture, in the unit of the scene.
 
@@ -45,7 +49,7 @@ class ScaleBar:
 
     - ``plotter``: any pyvista plotter; the bar belongs to its active renderer.
     - ``surroundings``: whose ink it is drawn with.
-    - ``factor``: size of text and line; pictures of several times the usual size want larger ones.
+    - ``factor``: size of text and line, and of the numbers of colour scales; pictures of several times the usual size want larger ones.
     """
 
     def __init__(
@@ -55,7 +59,7 @@ class ScaleBar:
         *,
         factor: float = 1.0,
     ) -> None:
-        self._renderer = plotter.renderer
+        self._renderer, self._colour_scales = plotter.renderer, plotter.scalar_bars
         self._line = pv.PolyData()
         self.suspended = False
         self._bar = flat_actor(self._line)
@@ -88,6 +92,8 @@ class ScaleBar:
 
     def update(self) -> None:
         """Fit the bar to the camera; called by itself before every picture."""
+        for scale in self._colour_scales.values():
+            scale.GetLabelTextProperty().SetFontSize(round(LABEL_SIZE * self._factor))
         width, height = self._renderer.GetSize()
         low, high = self._renderer.ComputeVisiblePropBounds()[:2]
         measurable = low <= high and not self.suspended  # the other way round, there is no surface
@@ -174,7 +180,7 @@ def show_colour_scale(plotter: Any, mapper: Any, surroundings: ThemeColors, numb
         height=0.26,
         position_x=0.92,
         position_y=0.04,
-        label_font_size=11,
+        label_font_size=LABEL_SIZE,
         title_font_size=11,
         unconstrained_font_size=True,
         render=False,

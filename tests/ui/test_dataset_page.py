@@ -410,6 +410,7 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     page.sizes.set_text("classes:abc, -5")
     assert not page.targets.export.isEnabled()
     assert page.targets.export.toolTip() == page.sizes.problem.text() != ""
+    assert page.targets.preview.text() == "", "without classes there is no filling"
     page.sizes.set_text("classes:30,60,120")
     assert page.targets.export.isEnabled()
     page.folder.name.setText("three")

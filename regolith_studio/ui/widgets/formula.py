@@ -29,6 +29,8 @@ BREAK = "\u200b"
 """Stands in a line where it may be continued on the next one; the pieces are valid mathtext by themselves."""
 THREAD_NAME = "formulas"
 """Name of the thread that makes outlines."""
+HIGH_WINDOW = 48, 1.4
+"""Height of a window in lines of text from which on formulas are larger, and by how much: as on a wall."""
 CACHE_SIZE = 2048
 """Pieces whose outlines are kept."""
 
@@ -121,8 +123,9 @@ class FormulaLabel(QWidget):
 
     def _scale(self) -> float:
         """Pixels of the widget for one unit of an outline."""
-        least = MIN_LINE_HEIGHT / LOWEST_LINE.height()
-        return max(MAGNIFICATION * self.fontMetrics().height() / 1.35 / EM, least)
+        least, height = MIN_LINE_HEIGHT / LOWEST_LINE.height(), self.fontMetrics().height()
+        large = HIGH_WINDOW[1] if self.window().height() >= HIGH_WINDOW[0] * height else 1.0
+        return max(large * MAGNIFICATION * height / 1.35 / EM, least)
 
 
 def pieces(lines: Iterable[str]) -> tuple[str, ...]:

@@ -146,9 +146,9 @@ class FixedHeightText(QScrollArea):
         super().resizeEvent(event)
         part = (self.height() - 2 * self.frameWidth()) % self.fontMetrics().lineSpacing()
         self.setViewportMargins(0, 0, 0, part)  # the tops of a further line would be seen there
-        self.more.setFixedHeight(self.fontMetrics().lineSpacing())
-        size = self.more.sizeHint()
-        self.more.move(self.width() - size.width(), self.height() - self.more.height() - self.frameWidth())
+        width, line = self.more.sizeHint().width(), self.fontMetrics().lineSpacing()
+        bottom = self.height() - self.frameWidth() - part
+        self.more.setGeometry(self.width() - width, bottom - line, width, line)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # it is for the column around

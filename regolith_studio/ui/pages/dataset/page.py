@@ -412,8 +412,9 @@ class DatasetPage(PageWidget):
         if self._is_current():
             reason = ""
         compounds = bool(self._dataset.compounds) if self._dataset is not None else False
-        self.targets.set_ready(reason, compounds)
+        # first, since each change shows the filling again, and without classes there is none
         self.targets.show_filling(self._filling if self._dataset or self._classes_to_build else None)
+        self.targets.set_ready(reason, compounds)
 
     def _classes(self) -> Sequence[ShapeClass]:
         if self._dataset is not None:
