@@ -15,6 +15,7 @@ from regolith_studio.cli.options import (
     Seed,
     claim_json,
     exit_code,
+    mesh_path,
     output_path,
     usage_errors,
     values,
@@ -259,7 +260,7 @@ def shape_source(
         raise typer.BadParameter(f"Give one fit, card or model, or meshes only; {named[0]} is not a mesh.")
     if named:
         return read_shape_source(named[0]), 0
-    loaded = reading.read([Path(source) for source in sources])
+    loaded = reading.read([mesh_path(source) for source in sources])
     sample: ShapeSource = run_with_progress(
         sample_of_meshes(loaded.particles, fit_request_for(request), jobs)
     )
