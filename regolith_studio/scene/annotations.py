@@ -49,7 +49,8 @@ class ScaleBar:
 
     - ``plotter``: any pyvista plotter; the bar belongs to its active renderer.
     - ``surroundings``: whose ink it is drawn with.
-    - ``factor``: size of text and line, and of the numbers of colour scales; pictures of several times the usual size want larger ones.
+    - ``factor``: size of text and line, and of the numbers of colour scales; pictures of several times the
+      usual size want larger ones.
     """
 
     def __init__(

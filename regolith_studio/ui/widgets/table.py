@@ -394,6 +394,8 @@ class ParticleTable(_FittedTable):
             empty = column.key in self._empty
             room -= 0 if empty else width
             self.setColumnHidden(number, empty or (not self._scrolls and number > 0 and room < 0))
+        if not self._scrolls:
+            self.setColumnWidth(0, min(self._widths[0], self.viewport().width()))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
