@@ -23,6 +23,7 @@ def polyhedron_of(half_spaces: HalfSpaces) -> ConvexPolyhedron:
         If the intersection is unbounded.
     """
     size = float(half_spaces.offsets.max())
+    # Areas are compared with absolute tolerances.
     found = intersect_half_spaces(half_spaces.normals, half_spaces.offsets / size)
     if found.status != FINE:
         return ConvexPolyhedron.from_half_spaces(half_spaces)

@@ -90,6 +90,7 @@ class Target:
         unit, centre, scale = _normalised(mesh)
         axes = principal_axes(unit)
         rounded = np.round(unit.vertices @ axes.T / COORDINATE_STEP) * COORDINATE_STEP
+        # After rounding: only then coordinates are the same in every orientation.
         aligned = _in_order(rounded, unit.faces)
         facts = ShapeCache(aligned)
         descriptors = Descriptors({key: CATALOGUE[key].compute(facts) for key in DEFAULT_KEYS})
@@ -157,6 +158,7 @@ def principal_axes(mesh: Mesh) -> FloatArray:
     tails = np.zeros(3)
     _add_tails(mesh.vertices, mesh.faces, axes, tails)
     axes *= np.where(tails < 0.0, -1.0, 1.0)[:, None]
+    # Not by its own tail, which would mirror some particles.
     axes[2] = np.cross(axes[0], axes[1])
     return np.asarray(axes, dtype=np.float64)
 
@@ -200,6 +202,7 @@ def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:
     if not size > MIN_SPAN:
         raise GeometryError("The mesh is a single point and encloses no volume.")
     _check_closed(mesh)
+    # At size 1 first: cubes of coordinates in small or large units would not be numbers.
     middle = (low + high) / 2
     rough = mesh.moved(shift=-middle, scale=1.0 / size)
     if rough.volume < 0.0:
@@ -214,6 +217,7 @@ def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:
 
 def _check_simple(rays: RayTable) -> None:
     """Along a ray, leaving and entering must alternate and end with leaving."""
+    # Behind its last crossing a ray is outside, as before an entry.
     last = np.zeros(len(rays.sign), dtype=bool)
     last[rays.first[1:][np.diff(rays.first) > 0] - 1] = True
     following = np.where(last, -1.0, np.roll(rays.sign, -1))

@@ -479,7 +479,10 @@ def _potential(
         before, behind = dot(start, edge), dot(end, edge)
         far, near = length(end) + behind, length(start) + before
         if before < 0.0 and behind < 0.0:
+            # The same quotient, as length^2 - projection^2 is the same for both ends; here the sums would
+            # cancel.
             far, near = length(start) - before, length(end) - behind
+        # In line with the edge the logarithm diverges, but its factor vanishes.
         if outward != 0.0 and near > 0.0 and far > 0.0:
             total += outward * np.log(far / near)
     volume = dot(a, cross(b, c))

@@ -67,6 +67,8 @@ def _width_between_edges(start: FloatArray, way: FloatArray, sides: FloatArray) 
 def _width_between(start: FloatArray, way: FloatArray, sides: FloatArray, i: int, j: int) -> float:
     """Distance between the parallel planes through two edges, infinite unless both planes are tangent."""
     one, two = row(way, i), row(way, j)
+    # The cross product of the edges lies between the normals of an edge's two facets only if the other edge
+    # points to different sides of these.
     if along(sides[j], 0, one) * along(sides[j], 1, one) > ROUNDING * dot(one, one):
         return np.inf
     if along(sides[i], 0, two) * along(sides[i], 1, two) > ROUNDING * dot(two, two):
@@ -76,6 +78,7 @@ def _width_between(start: FloatArray, way: FloatArray, sides: FloatArray, i: int
     if size <= PARALLEL * length(one) * length(two):
         return np.inf
     turn = 1.0 if along(sides[i], 0, normal) + along(sides[i], 1, normal) > 0.0 else -1.0
+    # The two planes look away from each other.
     if turn * (along(sides[j], 0, normal) + along(sides[j], 1, normal)) > 0.0:
         return np.inf
     return turn * dot(mixed(row(start, i), 1.0, row(start, j), -1.0), normal) / size
@@ -147,6 +150,7 @@ def _fill_bounds(points: FloatArray, cells: IntArray, bounds: FloatArray) -> Non
 @inline_kernel
 def _reach(bounds: FloatArray, c: int, direction: Vector) -> float:
     """How far a cell reaches from its centre along a direction of length one."""
+    # With height h along d and radius R no point is farther along u than h |<d, u>| + R sqrt(1 - <d, u>^2).
     turn = abs(direction[0] * bounds[c, 3] + direction[1] * bounds[c, 4] + direction[2] * bounds[c, 5])
     tilted = bounds[c, 6] * turn + bounds[c, 7] * np.sqrt(max(0.0, 1.0 - turn * turn))
     return float(min(bounds[c, 7], tilted))
@@ -161,6 +165,7 @@ def _bound(bounds: FloatArray, a: int, b: int) -> float:
         return float(radii * radii * (1.0 + ENLARGED))
     direction = (between[0] / distance, between[1] / distance, between[2] / distance)
     chord = distance + _reach(bounds, a, direction) + _reach(bounds, b, direction)
+    # Along the line of the centres two points are at most `chord` apart, across it at most both radii.
     whole = distance + radii
     return float(min(whole * whole, chord * chord + radii * radii) * (1.0 + ENLARGED))
 
@@ -168,6 +173,7 @@ def _bound(bounds: FloatArray, a: int, b: int) -> float:
 @kernel_noalloc
 def _longest(points: FloatArray, cells: IntArray, bounds: FloatArray, waiting: IntArray) -> float:
     """Largest distance between points of one cell or of two, from the root on."""
+    # Begun with a long chord, most pairs of cells are passed over.
     longest = _first_guess(points)
     n_waiting, waiting[0, 0], waiting[0, 1] = 1, 0, 0
     while n_waiting:
@@ -238,6 +244,7 @@ def length_width_thickness(hull: Mesh) -> tuple[float, float, float]:
 def _ends(points: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
     """Both ends of a longest chord, the first of equal ones."""
     away = np.linalg.norm(points, axis=1)
+    # The distances of both ends from the origin add up to the length of the chord or more.
     far = points[away >= length * (1.0 - ROUNDING) - away.max()]
     distances = cdist(far, far)
     first, second = np.unravel_index(int((distances >= length * (1.0 - ROUNDING)).argmax()), distances.shape)
@@ -266,6 +273,7 @@ def _widest_chord(points: FloatArray, edges: IntArray, along: FloatArray) -> Flo
         share = np.where(rise > 0.0, (height - low[crossing]) / np.where(rise > 0.0, rise, 1.0), 0.0)
         starts, ends = points[lower[crossing, 0]], points[lower[crossing, 1]]
         section = np.concatenate([starts + share[:, None] * (ends - starts), ends[rise == 0.0]])
+        # No chord is longer than the diagonal of the section's box: few sections are compared in pairs.
         if len(section) < 2 or float(np.linalg.norm(np.ptp(section, axis=0))) <= longest:
             continue
         distances = cdist(section, section)

@@ -37,6 +37,8 @@ def exits(
             for c in range(3):
                 coordinates[c, j] = directions[start + j, c]
         for i in range(len(offsets)):
+            # Along u plane i is met at h_i / <n_i, u>: the nearest has the largest product of u with n_i /
+            # h_i.
             a, b, c = normals[i, 0] / offsets[i], normals[i, 1] / offsets[i], normals[i, 2] / offsets[i]
             _compare(coordinates, (a, b, c), float(i), count, largest, place)
         for j in range(count):
@@ -88,6 +90,8 @@ class HalfSpaces:
             raise GeometryError(
                 f"Half-spaces must hold the origin inside: the smallest offset is {offsets.min():.3g}."
             )
+        # Divided by lengths that are 1 but for rounding, normals would change their last bits with every
+        # copy.
         unit = normals if np.all(np.abs(length - 1.0) < 4e-16) else normals / length
         object.__setattr__(self, "normals", locked_floats(unit, (None, 3), "normals"))
         object.__setattr__(self, "offsets", offsets)
@@ -137,6 +141,7 @@ class HalfSpaces:
         """
         rays = np.array(directions, dtype=np.float64, order="C")
         radius, plane = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
+        # Copies, as the kernel would be compiled once more for arrays that cannot be written.
         exits(np.array(self.normals), np.array(self.offsets), rays, radius, plane)
         return radius
 

@@ -12,8 +12,8 @@ from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.topology import edge_table, neighbours
 
-MAX_EXACT_RIM = 300
-"""Rims with more corners are closed by a fan about their middle: the best cover takes cubic time."""
+MAX_EXACT_BOUNDARY = 300
+"""Boundaries with more corners are closed by a fan about their middle: the best cover takes cubic time."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,11 @@ class FilledHoles:
 def hole_boundaries(faces: IntArray, n_vertices: int) -> list[IntArray]:
     """Vertices around each hole, in the order in which the missing triangles run.
 
-    The faces must be wound consistently. Where two holes touch in a vertex, each has its own rim.
+    The faces must be wound consistently. Where two holes touch in a vertex, each has its own boundary.
     """
     table = edge_table(faces, n_vertices)
     lone = np.flatnonzero(neighbours(table) < 0)
+    # A missing triangle runs the other way along the edge.
     start, stop = np.roll(faces, -1, axis=1).ravel()[lone], faces.ravel()[lone]
     onward: dict[int, list[int]] = {}
     for a, b in zip(start.tolist(), stop.tolist(), strict=True):
@@ -55,7 +56,7 @@ def hole_boundaries(faces: IntArray, n_vertices: int) -> list[IntArray]:
 
 
 def _walk(seed: int, onward: dict[int, list[int]]) -> list[list[int]]:
-    """Loops met on a walk from `seed` until no rim leads on; each is cut off as soon as it closes."""
+    """Loops met on a walk from `seed` until no boundary leads on; each is cut off as soon as it closes."""
     loops, path, place = [], [seed], {seed: 0}
     while onward.get(path[-1]):
         step = onward[path[-1]].pop()
@@ -74,20 +75,20 @@ def _walk(seed: int, onward: dict[int, list[int]]) -> list[list[int]]:
 def fill_holes(vertices: FloatArray, faces: IntArray, *, only_fans: bool = False) -> FilledHoles:
     """Close every hole of a consistently wound mesh.
 
-    A hole gets the triangulation of its rim with the least area, which is exact for flat hole_boundaries; a
-    fan about the rim's middle where the rim is long or its triangulation would double an edge.
+    A hole gets the triangulation of its boundary with the least area, which is exact for flat ones; a
+    fan about the boundary's middle where the boundary is long or its triangulation would double an edge.
     """
-    holes = [rim for rim in hole_boundaries(faces, len(vertices)) if len(rim) >= 3]
+    holes = [boundary for boundary in hole_boundaries(faces, len(vertices)) if len(boundary) >= 3]
     middles: list[FloatArray] = []
     patches = [faces]
     area = 0.0
     taken = _edges_between(holes, faces, len(vertices))
-    for rim in holes:
-        patch = None if only_fans else _min_area_patch(vertices, rim, taken)
+    for boundary in holes:
+        patch = None if only_fans else _min_area_patch(vertices, boundary, taken)
         if patch is None:
-            middle = vertices[rim].mean(axis=0)
-            apex = np.full(len(rim), len(vertices) + len(middles))
-            patch = np.column_stack([rim, np.roll(rim, -1), apex])
+            middle = vertices[boundary].mean(axis=0)
+            apex = np.full(len(boundary), len(vertices) + len(middles))
+            patch = np.column_stack([boundary, np.roll(boundary, -1), apex])
             area += _area(vertices[patch[:, 0]], vertices[patch[:, 1]], middle)
             middles.append(middle)
         else:
@@ -102,28 +103,30 @@ def _area(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
 
 
 def _edges_between(holes: list[IntArray], faces: IntArray, n_vertices: int) -> set[tuple[int, ...]]:
-    """The edges of a mesh whose both ends lie on a rim, as pairs with the lower index first."""
+    """The edges of a mesh whose both ends lie on a boundary, as pairs with the lower index first."""
     if not holes:
         return set()
-    on_rim = np.zeros(n_vertices, dtype=np.bool_)
-    on_rim[np.concatenate(holes)] = True
+    on_boundary = np.zeros(n_vertices, dtype=np.bool_)
+    on_boundary[np.concatenate(holes)] = True
     ends = edge_table(faces, n_vertices).ends
-    return {tuple(edge) for edge in ends[on_rim[ends].all(axis=1)].tolist()}
+    return {tuple(edge) for edge in ends[on_boundary[ends].all(axis=1)].tolist()}
 
 
-def _min_area_patch(vertices: FloatArray, rim: IntArray, taken: set[tuple[int, ...]]) -> IntArray | None:
-    """Least-area triangles of a rim whose inner edges are new; adds those to `taken`."""
-    n = len(rim)
-    if n > MAX_EXACT_RIM:
+def _min_area_patch(vertices: FloatArray, boundary: IntArray, taken: set[tuple[int, ...]]) -> IntArray | None:
+    """Least-area triangles of a boundary whose inner edges are new; adds those to `taken`."""
+    n = len(boundary)
+    if n > MAX_EXACT_BOUNDARY:
         return None
     barred = np.zeros((n, n), dtype=np.bool_)
     for i in range(n):
+        # The first corner and the last are neighbours. A chord that is an edge of the mesh already is barred,
+        # or it would get four triangles.
         for k in range(i + 2, n - (i == 0)):
-            barred[i, k] = (min(rim[i], rim[k]), max(rim[i], rim[k])) in taken
+            barred[i, k] = (min(boundary[i], boundary[k]), max(boundary[i], boundary[k])) in taken
     places = np.empty((n - 2, 3), dtype=np.int64)
-    if not least_area_triangles(vertices[rim], barred, places):
+    if not least_area_triangles(vertices[boundary], barred, places):
         return None
-    triangles = rim[places]
+    triangles = boundary[places]
     for ends in np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2).tolist():
         taken.add((min(ends), max(ends)))
     return triangles
@@ -147,6 +150,7 @@ def least_area_triangles(points: FloatArray, barred: BoolArray, triangles: IntAr
             if barred[i, k]:
                 continue
             for j in range(i + 1, k):
+                # No area is computed where the rest alone is no less.
                 if cost[i, j] + cost[j, k] < cost[i, k]:
                     normal = np.cross(points[j] - points[i], points[k] - points[i])
                     value = cost[i, j] + cost[j, k] + np.sqrt((normal * normal).sum()) / 2
@@ -210,6 +214,7 @@ class Enclosure:
 def enclosure(closed: Mesh, n_cover: int) -> Enclosure:
     """How a closed mesh encloses if its last `n_cover` triangles are taken away; all 0 for no volume."""
     points, volumes, windings = _ray_segments(closed)
+    # The mesh is inside out.
     if volumes @ windings < 0:
         windings = -windings
     wrapped, once = windings != 0, windings == 1
@@ -218,6 +223,7 @@ def enclosure(closed: Mesh, n_cover: int) -> Enclosure:
     chosen = points[once][_systematic_sample(volumes[once])]
     cover = closed.triangles[len(closed.faces) - n_cover :]
     parts = np.array_split(cover, 1 + len(cover) // COVER_CHUNK)
+    # Of either sign, as the mesh may be inside out.
     missing = np.abs(sum(solid_angles(part, chosen) for part in parts)) / (4 * np.pi)
     return Enclosure(
         float(volumes[once].sum() / volumes[wrapped].sum()),
@@ -277,11 +283,13 @@ def _ray_segments(mesh: Mesh) -> tuple[FloatArray, FloatArray, IntArray]:
     hits = radial_hits(mesh, origin, directions)
     begins = np.flatnonzero(np.diff(hits.ray, prepend=-1))
     lengths = np.diff(begins, append=len(hits.ray))
+    # From outside inwards, as the winding number is known to be 0 there.
     outward = np.cumsum(hits.sign[::-1])[::-1]
     beyond = np.append(outward, 0)[begins + lengths]
     start = np.concatenate([[0.0], hits.distance[:-1]])
     start[begins] = 0.0
     near, far = start**3, hits.distance**3
+    # As much of the segment's volume lies before this point as behind it.
     middle = origin + directions[hits.ray] * np.cbrt((near + far) / 2)[:, None]
     return middle, far - near, outward - np.repeat(beyond, lengths)
 

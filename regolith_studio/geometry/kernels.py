@@ -39,6 +39,8 @@ T = TypeVar("T")
 UNUSED_DAYS = 60
 """Folders of machine code that no process has used for so long are deleted."""
 
+# Divisions by zero give infinity: a test for each would keep loops from being vectorised. No fastmath: it
+# adds up in another order on each kind of processor.
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": False}
 _NO_COUNTING: dict[str, Any] = {"_nrt": False}
 # An option of numba without documentation. Each use of an array of a named tuple otherwise counts references
@@ -47,6 +49,7 @@ _CONFIG: Any = numba.config
 _FUNCTION_CACHE: Any = FunctionCache  # numba has no types
 _PACKAGE = Path(__file__).resolve().parents[1]
 _CODE = "*-" + "[0-9a-f]" * 16  # folders of machine code; NUMBA_CACHE_DIR may hold those of other programs
+# The first begins the mark of `kernel_noalloc`, too.
 _MARKS = (b"@kernel", b"@inline_kernel")
 
 

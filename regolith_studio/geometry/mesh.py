@@ -114,6 +114,7 @@ def equal_ellipsoid(inertia: FloatArray, volume: float) -> FloatArray:
     inertia
         Tensor of inertia of the solid at volume and density 1, shape (3, 3).
     """
+    # The second moments, which for an ellipsoid go with the squares of its semi-axes.
     second = np.trace(inertia) / 2 * np.eye(3) - inertia
     shape = np.sqrt(np.linalg.eigvalsh(second)[::-1])
     radius = np.cbrt(3.0 * volume / (4.0 * np.pi))
@@ -180,6 +181,7 @@ class _CacheLedger:
         with self._lock:
             self._entries.append((ref(owner), name, size))
             self._size += size
+            # Not those of the last owner, which is being measured and would compute them again and again.
             while self._size > MAX_CACHED_BYTES and self._entries[0][0]() is not owner:
                 oldest, name, size = self._entries.popleft()
                 self._size -= size
@@ -305,6 +307,7 @@ class Mesh:
         size = float((high - low).max())
         if size == 0.0:
             raise GeometryError("The mesh is a single point and has no convex hull.")
+        # The precision of Qhull goes with the largest coordinate.
         unit = (self.vertices - (low + high) / 2) / size
         order = np.arange(len(unit), dtype=np.int32)
         if len(unit) > MANY_VERTICES:

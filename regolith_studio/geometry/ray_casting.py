@@ -148,6 +148,7 @@ NEGLIGIBLE = 2.0**-200
 """Coordinates below this share of the size are zero; it keeps the exact arithmetic from underflow."""
 
 RAYS_PER_BIN = 2
+# Far above the rounding of a direction, and far below the width of a bin.
 MARGIN = 1e-9
 """Added to the radius of every cap, in radians."""
 
@@ -226,6 +227,7 @@ def bins_around(
             return everything
         x, y, z = x + p[0] / length, y + p[1] / length, z + p[2] / length
     length = np.sqrt(x * x + y * y + z * z)
+    # The directions are spread over nearly the whole sphere, and their mean says nothing of them.
     if length < 0.1:
         return everything
     x, y, z = x / length, y / length, z / length
@@ -239,6 +241,7 @@ def bins_around(
         return everything
     cosine, sine = 1.0 - chord**2 / 2.0, chord * np.sqrt(1.0 - chord**2 / 4.0)
     across = np.sqrt(x * x + y * y)
+    # A cap that holds a pole reaches to it, and over all longitudes.
     low = row_of(-1.0 if -z >= cosine else z * cosine - across * sine - MARGIN, rows)
     high = row_of(1.0 if z >= cosine else z * cosine + across * sine + MARGIN, rows)
     if abs(z) >= cosine or sine >= across:
@@ -307,6 +310,7 @@ def radial_hits(mesh: Mesh, origin: ArrayLike, directions: ArrayLike) -> RadialH
     if not (lengths > 0.0).all():
         raise ValueError("directions must not vanish")
     points = mesh.vertices - centre
+    # A power of two: dividing by it changes no bit of a coordinate, on which exact signs depend.
     size = 2.0 ** np.ceil(np.log2(max(float(np.abs(points).max(initial=0.0)), 1e-300)))
     bins = direction_bins(rays / lengths[:, None])
     corners, space = _scaled(points / size), 2 * len(rays) + 64
@@ -380,6 +384,8 @@ def _cast(
                         continue
                     slope = way * along(directions, ray, normal) / lengths[ray]
                     crossings[n - 1, 0], crossings[n - 1, 1], crossings[n - 1, 2] = ray, int(way), f
+                    # Where the ray nearly lies in the plane of the triangle the quotient is rounding: the hit
+                    # is between its nearest and its farthest point.
                     far = abs(six) / slope if slope > 0.0 else farthest
                     distance[n - 1] = max(nearest, min(farthest, far))
     return n
@@ -415,6 +421,7 @@ def _side(u: FloatArray, a: FloatArray, b: FloatArray) -> int:
     """Sign of u . (a x b), and if that is zero, of u moved by (e, e^2, e^3) with e infinitely small."""
     sign = sign_of_triple_product(u, a, b)
     for axis in range(3):
+        # The coefficients of e, e^2 and e^3 are the components of a x b.
         if sign == 0:
             sign = sign_of_cross_product(a, b, axis)
     return sign
@@ -423,6 +430,7 @@ def _side(u: FloatArray, a: FloatArray, b: FloatArray) -> int:
 @kernel
 def _sort(ray: IntArray, distance: FloatArray, face: IntArray, n_rays: int, order: IntArray) -> None:
     """Fill `order`, that of the crossings by ray, distance and face."""
+    # Counted by ray, then sorted by insertion: a ray has few crossings.
     first = np.zeros(n_rays + 1, np.int64)
     for k in ray:
         first[k + 1] += 1

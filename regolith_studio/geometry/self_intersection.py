@@ -6,11 +6,12 @@ from numba import int64
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_integers
 from regolith_studio.geometry.kernels import kernel
 
-MOST_CELLS = 1 << 21
+# 16 MB of counts.
+MAX_CELLS = 1 << 21
 SLACK = 1e-12
-"""Share of a triangle by which an edge must pass inside its rim."""
+"""Share of a triangle by which an edge must pass inside its boundary."""
 
-MOST_CANDIDATES = 200
+MAX_CANDIDATES = 200
 """Mean number of triangles in a triangle's cells beyond which the search is given up."""
 
 
@@ -37,7 +38,7 @@ def crossing_pairs(vertices: FloatArray, faces: IntArray) -> tuple[int, BoolArra
         return 0, np.zeros(len(faces), dtype=np.bool_)
     edge = max(float((high - low).max(axis=1).mean()), size / 4096)
     shape = np.maximum(np.ceil((high.max(axis=0) - origin) / edge), 1.0)
-    while shape.prod() > MOST_CELLS:
+    while shape.prod() > MAX_CELLS:
         edge *= 1.3
         shape = np.maximum(np.ceil((high.max(axis=0) - origin) / edge), 1.0)
     cells = shape.astype(np.int64)
@@ -49,7 +50,7 @@ def crossing_pairs(vertices: FloatArray, faces: IntArray) -> tuple[int, BoolArra
     start, member = np.zeros(int(cells.prod()) + 1, dtype=np.int64), np.empty(entries, dtype=np.int64)
     fill_cells(first, last, cells, start, member)
     load = np.diff(start)
-    if float((load.astype(np.float64) ** 2).sum()) > MOST_CANDIDATES * (len(faces) + 4096):
+    if float((load.astype(np.float64) ** 2).sum()) > MAX_CANDIDATES * (len(faces) + 4096):
         return None
     crossing = np.zeros(len(faces), dtype=np.bool_)
     return int(mark_crossings(corners / size, faces, first, cells, start, member, crossing)), crossing
@@ -121,6 +122,7 @@ def cross(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> b
         for j in range(3):
             if face_a[i] == face_b[j]:
                 shared += 1
+    # Triangles with a common edge meet in it and nowhere else.
     if shared > 1:
         return False
     return pierces(a, b, face_a, face_b) or pierces(b, a, face_b, face_a)
@@ -144,6 +146,7 @@ def pierces(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) ->
         q = qx * nx + qy * ny + qz * nz
         if not ((p > slack and q < -slack) or (p < -slack and q > slack)):
             continue
+        # An edge with a common corner only touches the other triangle there.
         common = False
         for k in range(3):
             if face_a[i] == face_b[k] or face_a[j] == face_b[k]:

@@ -125,6 +125,7 @@ def label_bodies(across: IntArray, forward: BoolArray, body: IntArray, turned: B
                 elif turned[neighbour] != turn:
                     conflicts += 1
         count += 1
+    # Each contradiction is met from both of its triangles.
     return conflicts // 2  # type: ignore[return-value]
 
 

@@ -52,6 +52,8 @@ class Ellipsoid:
 def best_fit_ellipsoid(mesh: Mesh) -> Ellipsoid:
     """The ellipsoid with the volume and the principal moments of inertia of a closed mesh."""
     moments, axes = np.linalg.eigh(mesh.inertia)
+    # The second moments, which go with the squares of the semi-axes; of a thin mesh rounding may make one
+    # negative.
     second = moments.sum() / 2 - moments
     lengths = np.sqrt(np.maximum(second, 1e-12 * second.max()))
     volume = 4 / 3 * np.pi * lengths.prod()
@@ -184,6 +186,7 @@ def _winding_number(table: FloatArray, centre: FloatArray) -> int:
 def _beside(rays: FloatArray, attempt: int) -> FloatArray:
     """The rays turned by a tiny angle, another one each attempt."""
     angle = RECAST_ANGLE * (attempt + 1)
+    # Another axis each time, as a ray along the axis would stay where it is.
     axis = np.roll(np.array([0.37, -0.61, 0.70]), attempt)
     beside = rays + angle * np.cross(axis, rays)
     return np.asarray(beside / np.linalg.norm(beside, axis=1, keepdims=True))
@@ -201,6 +204,7 @@ def is_closed(mesh: Mesh) -> bool:
     forward = start < end
     low, high = np.where(forward, start, end), np.where(forward, end, start)
     word = _mixed(low + _mixed(high))
+    # An edge between equal corners has no direction, so that both of its sides would count alike.
     word[start == end] = 0
     total = np.where(forward, word, ~word + np.uint64(1)).sum(dtype=np.uint64)
     return bool(total == 0)
@@ -218,6 +222,7 @@ def require_solid(mesh: Mesh) -> Mesh:
             "The mesh is open or its triangles are not oriented consistently: repair it first."
         )
     size = float(np.ptp(mesh.bounds, axis=0).max())
+    # The volume of a flat mesh is rounding, of either sign.
     if not mesh.volume > 1e-12 * size**3:
         state = "is inside out" if mesh.volume < -1e-12 * size**3 else "encloses no volume"
         raise GeometryError(f"The mesh {state}: its signed volume is {mesh.volume:.3g}.")
@@ -226,6 +231,7 @@ def require_solid(mesh: Mesh) -> Mesh:
 
 def _vertex_words(mesh: Mesh) -> NDArray[np.uint64]:
     """A word for each vertex, equal for equal coordinates, shape (n,)."""
+    # Adding 0 makes -0, whose bits differ, to 0.
     bits = (mesh.vertices + 0.0).view(np.uint64)
     return _mixed(bits[:, 0] + _mixed(bits[:, 1] + _mixed(bits[:, 2])))
 

@@ -64,6 +64,7 @@ def fill_basis(directions: FloatArray, l_max: int, basis: FloatArray) -> None:
         x, y, z = directions[i, 0], directions[i, 1], directions[i, 2]
         sine = np.sqrt(x * x + y * y)
         fill_legendre(z, sine, factors, p)
+        # At the poles, where all orders above 0 vanish, any longitude will do.
         c1, s1 = (x / sine, y / sine) if sine > 0.0 else (1.0, 0.0)
         c, s = 1.0, 0.0
         for m in range(l_max + 1):
@@ -71,6 +72,7 @@ def fill_basis(directions: FloatArray, l_max: int, basis: FloatArray) -> None:
                 basis[l * l + l + m, i] = p[l, m] * c
                 if m > 0:
                     basis[l * l + l - m, i] = p[l, m] * s
+            # The next cosine and sine by addition of angles, in place of a call for each order.
             c, s = c * c1 - s * s1, s * c1 + c * s1
 
 
@@ -105,6 +107,8 @@ def analyse_rings(samples: FloatArray, cosines: FloatArray, weights: FloatArray,
     n = samples.shape[1]
     waves = np.fft.rfft(samples, axis=1)[:, : l_max + 1] * (2 * np.pi / n * weights)[:, None]
     values = np.zeros((l_max + 1) ** 2)
+    # rfft sums with exp(-i m phi), so that the sine waves are minus its imaginary part; the copy is
+    # contiguous, which the kernel is compiled for.
     _sum_over_rings(waves.real.copy(), -waves.imag, cosines, l_max, values)
     return values
 
@@ -122,6 +126,7 @@ def synthesise_rings(values: FloatArray, cosines: FloatArray, n_longitudes: int)
     even, odd = np.zeros((len(cosines), l_max + 1)), np.zeros((len(cosines), l_max + 1))
     _sum_over_degrees(values, cosines, even, odd)
     waves = (even - 1j * odd) * (n_longitudes / 2)
+    # irfft adds the conjugate of every wave but the constant one.
     waves[:, 0] *= 2.0
     return np.fft.irfft(waves, n_longitudes, axis=1)
 

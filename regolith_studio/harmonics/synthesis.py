@@ -61,6 +61,7 @@ class IcosphereEdges:
         (e,).
         """
         start, end = radius[self.ends[:, 0]], radius[self.ends[:, 1]]
+        # Between radii r and s along u and v the ray in the middle meets the chord at |u + v| r s / (r + s).
         chord = start * end / (start + end) * self.spans
         return np.asarray(self.weights @ (between - chord))
 
@@ -76,6 +77,7 @@ def icosphere_edges(level: int) -> IcosphereEdges:
     n_triangles = np.bincount(sphere.faces.ravel())
     rows = np.repeat(sphere.faces, 3, axis=1).ravel()
     columns = np.tile(of_face.reshape(-1, 3), (1, 3)).ravel()
+    # The mean of three middles for a triangle, and of its triangles for a vertex.
     shares = 1 / (3 * n_triangles[rows])
     weights = csr_array((shares, (rows, columns)), shape=(len(sphere.vertices), len(ends)))
     return IcosphereEdges(ends, sums / spans[:, None], spans, weights)
@@ -264,6 +266,7 @@ def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: in
     _refuse_negative(fit, radius)
     _refuse_negative(fit, between)
     sphere = icosphere(level)
+    # In narrow pits the surface lies far inside of the chords: vertices would pass through the origin.
     lifted = np.maximum(radius + edges.chord_errors(radius, between), radius / 2)
     vertices = sphere.vertices * lifted[:, None]
     volume = enclosed_volume(fit.coefficients, fit.reference)
@@ -299,6 +302,8 @@ def enclosed_volume(coefficients: ShCoefficients, reference: Ellipsoid | None = 
     The quadrature is exact from a grid of degree 1.5 l_max on.
     """
     if reference is not None:
+        # The radius of an ellipsoid has no highest degree: a finer grid than for the cube of the expansion
+        # alone.
         return _volume_on_grid(coefficients, reference, max(60, 2 * coefficients.l_max))
     grid = ray_grid(max(1, 3 * coefficients.l_max // 2 + 1))
     return 4 * np.pi / 3 * grid.mean(evaluate_on_grid(grid, coefficients) ** 3)

@@ -50,6 +50,7 @@ class HullGrid:
         np.reciprocal(inverse, out=inverse)
         supports(inverse, self.cosines, self.reaches, found)
         np.reciprocal(found, out=found)
+        # A hull holds its body, which rounding to single precision may deny.
         return np.asarray(np.maximum(found, given, out=found))
 
     def convexities(self, radii: FloatArray) -> FloatArray:
@@ -76,6 +77,8 @@ class HullGrid:
         for _ in range(NEWTON_STEPS):
             filled = cubes * np.exp(3 * shares * distance)
             volume, slope = filled @ weights, 3 * ((filled * distance) @ weights)
+            # Newton's method on ln V, which is nearly linear in the share; a convex body has no distance and
+            # no slope.
             step = np.log(wanted / volume) * volume / np.maximum(slope, 1e-6 * volume)
             shares = np.clip(shares + step[:, None], *SHARES).astype(np.float32)
         return np.asarray(log_radii + shares * distance)

@@ -36,6 +36,7 @@ from regolith_studio.shape_models.size_law import LogNormalSizes
 Tables = NDArray[np.float32]
 
 ROWS_PER_DEGREE = 2.4
+# The cubic takes two nodes on either side.
 MARGIN = 2
 _BATCH = 500
 
@@ -56,6 +57,7 @@ def radius_tables(coefficients: FloatArray) -> Tables:
 def _wrapped(grid: Tables) -> Tables:
     """With two more rows beyond each pole and two more columns on each side."""
     rows = grid.shape[1]
+    # Beyond a pole the meridian goes on at the opposite longitude.
     opposite = np.roll(grid, rows, axis=2)
     tall = np.concatenate([opposite[:, MARGIN - 1 :: -1], grid, opposite[:, : -MARGIN - 1 : -1]], axis=1)
     return np.concatenate([tall[:, :, -MARGIN:], tall, tall[:, :, :MARGIN]], axis=2)
@@ -153,6 +155,7 @@ class MappedSurfaces:
         sample.truncated(l_max)  # refuses what the sample lacks
         usable = sample.truncated(min(sample.l_max, OVERSAMPLING * l_max)).star_shaped()
         if usable.l_max > l_max:
+            # A radius that is positive with all degrees may fall below zero where it is cut.
             keep = np.flatnonzero(positive_rows(usable.truncated(l_max).coefficients))
             if len(keep) < len(usable):
                 usable = usable.chosen(keep)
@@ -189,6 +192,8 @@ class MappedSurfaces:
     def mapped(self, picks: IntArray, inverses: FloatArray) -> FloatArray:
         """Coefficients (k, (l_max + 1)^2) of the particles `picks` (k,) under maps with these inverses
         (k, 3, 3)."""
+        # Exact for harmonics up to l_max times surfaces up to 1.2 times the degree of the measured ones: maps
+        # raise it.
         grid = sphere_grid((5 * self.l_max + 6 * self._base) // 10 + 1, self.l_max)
         radii = np.empty((len(picks), len(grid.directions)))
         mapped_radii(self._tables, picks, np.ascontiguousarray(inverses), grid.directions, radii)

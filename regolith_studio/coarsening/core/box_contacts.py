@@ -94,6 +94,7 @@ def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: Fl
                 if v == end or abs(dot(apart, x)) > TOUCHING:
                     continue
                 turn = cross(x, apart)
+                # What the ties before leave of this turn: only a further freedom counts.
                 for t in range(n):
                     turn = mixed(turn, 1.0, row(ties, t), -along(ties, t, turn))
                 if length(turn) > most:
@@ -164,6 +165,7 @@ def pose_of(points: FloatArray, contact: IntArray, frame: FloatArray) -> Pose:
         )
     free = cross(one, two)
     slope = mixed(mixed(slopes[0], 1.0, slopes[1], 1.0), 1.0, slopes[2], 1.0)
+    # How <slope, free> changes with a rotation about each coordinate axis: the third row of Newton's matrix.
     bend = (0.0, 0.0, 0.0)
     for k in range(3):
         unit = (1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0)
@@ -361,6 +363,7 @@ def downhill(pose: Pose, n: int, released: int) -> Vector:
     for t in range(n):
         if t != released:
             held = pose.conditions[0] if t == 0 else (pose.conditions[1] if t == 1 else pose.conditions[2])
+            # At most two ties hold, so that each has to be made orthogonal to one other only.
             held = mixed(held, 1.0, first, -dot(held, first))
             held = mixed(held, 1.0 / length(held), held, 0.0)
             turn = mixed(turn, 1.0, held, -dot(held, turn))
@@ -386,6 +389,7 @@ def next_contact(
             tied = False
             for t in range(contact[0]):
                 tied = tied or (contact[7 + 2 * t] == s and contact[8 + 2 * t] == v)
+            # A vertex that rounding puts outside touches at once.
             gap = max(0.0, dot(x, apart))
             if not tied and gap < soonest * rate:
                 soonest, next_side, next_vertex = gap / rate, s, v
@@ -427,6 +431,7 @@ def tie_shares(pose: Pose, contact: IntArray) -> Vector:
     volume = dot(rows[0], one)
     shares = (dot(slope, one) / volume, dot(slope, two) / volume, dot(slope, three) / volume)
     return (
+        # Slopes are those of logarithms, ties are lengths.
         shares[0] * signed_extent(pose, contact, 0),
         shares[1] * signed_extent(pose, contact, 1),
         shares[2] * signed_extent(pose, contact, 2),
@@ -510,6 +515,7 @@ def change_tie(
     turn, last = downhill(pose, contact[0], tie), contact[0] - 1
     if at_end:
         contact[1 + contact[7 + 2 * tie]] = contact[8 + 2 * tie]
+    # Ties have no order: the last takes the place of the one given up.
     contact[7 + 2 * tie], contact[8 + 2 * tie] = contact[7 + 2 * last], contact[8 + 2 * last]
     contact[0] = last
     _, side, vertex = next_contact(vertices, contact, frame, turn)

@@ -31,6 +31,7 @@ def extent_forces(points: FloatArray, contact: IntArray, frame: FloatArray, forc
             forces[k, i, 0] = forces[k, i, 1] = forces[k, i, 2] = 0.0
         _add_pair_force(forces, k, 2 * k, 2 * k + 1, pose.axes[k], 1.0 / pose.extents[k])
     one, two, three = pose.conditions
+    # Transposed (adjoint): one solution for each extent instead of one for each coordinate of each vertex.
     columns = ((one[0], two[0], three[0]), (one[1], two[1], three[1]), (one[2], two[2], three[2]))
     for k in range(3):
         sound, share = solved(columns, pose.slopes[k])
@@ -85,6 +86,7 @@ def update_vertex_ids(
         axis = mixed(axis, 1.0 if side % 2 == 0 else -1.0, axis, 0.0)
         contact[place] = 0
         for k in range(6):
+            # Each pair of its planes both ways round: the two ends of the line in which they meet.
             v = owner[planes[i, k % 3], planes[i, (k + 1 + k // 3) % 3]]
             if v >= 0 and along(vertices, v, axis) > highest and not is_touched(contact, side, i, v):
                 contact[place], highest = v, along(vertices, v, axis)

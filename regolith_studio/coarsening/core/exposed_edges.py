@@ -159,6 +159,7 @@ def _add_outside(
     for part in range(len(first) - 1):
         if part in (i, j):
             continue
+        # `first[part + 1]` is no plane of that part: none is left out.
         enter, leave = clipped(
             normals, offsets, first[part], first[part + 1], first[part + 1], p, line, low, high
         )
@@ -242,6 +243,7 @@ def add_exposed_surface_charges(
         p, q = (ends[e, 0], ends[e, 1], ends[e, 2]), (ends[e, 3], ends[e, 4], ends[e, 5])
         n, m = row(normals, planes[e, 0]), row(normals, planes[e, 1])
         edge = length(mixed(p, 1.0, q, -1.0))
+        # |n x m| / (1 + <n, m>) = tan(theta / 2).
         weight = planes[e, 2] * size * edge * length(cross(n, m)) / max(1.0 + dot(n, m), 1e-12)
         for side in range(2):
             add_force(charges, planes[e, side], weight, mixed(p, 0.5, q, 0.5), pivots)

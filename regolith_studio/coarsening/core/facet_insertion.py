@@ -54,6 +54,7 @@ def insert_lost_facets(
     """
     normals, offsets, n_cuts = np.array(normals), np.array(offsets), 0
     for _ in range(len(offsets) if most is None else most):
+        # Anew for each cut, whose own corners may be the next to be cut.
         polyhedron = measure_polyhedron(normals, offsets)
         if polyhedron.status != FINE:
             return -1, normals, offsets
@@ -120,6 +121,7 @@ def _best_corner(
                 one, two, three = two, three, edge
         below = _below(depth, room)
         sides = cross(mixed(two, 1.0, one, -1.0), mixed(three, 1.0, one, -1.0))
+        # Twice the least area, or the cut would soon count as lost again.
         if count == 3 and room > 0.0 and 0.5 * below * below * length(sides) > 2.0 * MIN_FACET:
             rooms[v] = room
     at, max_overhang = int(rooms.argmax()), -np.inf

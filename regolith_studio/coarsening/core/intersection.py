@@ -47,6 +47,7 @@ class IntersectionWorkspace(NamedTuple):
 @kept_in_thread
 def workspace_for(n: int) -> IntersectionWorkspace:
     """Memory for n planes."""
+    # Twice as many as n + 4 planes have vertices: new ones come before those cut off are free.
     places = 4 * (n + 4) + 16
     return IntersectionWorkspace(
         np.empty((4, places)),
@@ -85,6 +86,7 @@ def fill_vertices(
     used, n_free = fill_tetrahedron(work, n, reach), np.uintp(place.shape[1] - 5)
     for j in range(n):
         n_dead = above_plane(place, used, row(normals, j), offsets[j], lists)
+        # A vertex that is cut off leaves at most three, one on each of its edges.
         if n_free < 3 * n_dead:
             return DEGENERATE, 0
         for i in range(n_dead):
@@ -92,6 +94,7 @@ def fill_vertices(
             for k in range(3):
                 a, b = np.uintp(planes[v, k]), np.uintp(planes[v, (k + 1) % 3])
                 u = np.uintp(owner[b, a])
+                # Not `> 0`: where no vertex lives the height is NaN.
                 if not place[HEIGHT, u] <= 0.0:
                     continue
                 n_free -= np.uintp(1)
@@ -105,6 +108,7 @@ def fill_vertices(
                 owner[a, b] = owner[b, j] = owner[j, a] = w
         for i in range(n_dead):
             v = np.uintp(lists[DEAD, i])
+            # A coordinate, too, so that the height above every later plane is NaN.
             place[0, v] = place[HEIGHT, v] = np.nan
             lists[FREE, n_free] = v
             n_free += np.uintp(1)
@@ -140,6 +144,7 @@ def fill_tetrahedron(work: IntersectionWorkspace, n: int, reach: float) -> int:
             owner[a, b] = places - 1
     for i in range(places - 5):
         lists[FREE, i] = places - 2 - i
+    # Planes with normals (+-1, +-1, +-1) / sqrt(3) at this distance meet in corners of a cube.
     far = reach * np.sqrt(3.0)
     for v in range(4):
         for c in range(3):
@@ -175,10 +180,12 @@ def collect(
             if owner[a, b] != v or not place[HEIGHT, np.uintp(owner[b, a])] <= 0.0:
                 return DEGENERATE, 0
             triples[count, k] = a
+        # Coordinates interpolated cut by cut carry the rounding of all cuts before.
         refine(normals, offsets, planes, place, v, vertices, count)
         work.lists[NUMBER, v] = count
         count += 1
     for i in range(n):
+        # The rows of the artificial planes are free by now.
         owner[n, i] = 1
     for v in range(count):
         for k in range(3):

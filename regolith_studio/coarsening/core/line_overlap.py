@@ -87,13 +87,17 @@ def _add_line(
                     inside += lines.sign[j]
             slant = abs(speeds[plane])
             at = mixed(row(lines.points, i), 1.0, row(lines.directions, lines.bundle[i]), t)
+            # A plane that moves outward by w moves the end of an interval by w / slant along the line.
             add_force(parts.charges, plane, inside / max(slant, SLANTED), at, pivots)
             x = mixed(at, 1.0, row(pivots, plane), -1.0)
+            # The speed w(x) of `plane_coordinates` for a shift and the two tilts.
             lever = (
                 1.0,
                 -along(tangents[plane], 0, x) / scales[plane],
                 -along(tangents[plane], 1, x) / scales[plane],
             )
+            # A facet meets lines in proportion to its slant. The squares of its slants to the three bundles
+            # add up to 1, and each bundle has a third of the weight; the distance is taken across the facet.
             stiffness = 3.0 * slant / max(nearest * slant, NEAR)
             for a in range(3):
                 for b in range(3):
@@ -152,6 +156,7 @@ def compound_distance(mesh: Mesh, compound: ConvexCompound, n_lines: int = N_LIN
     planes = Planes(normals, offsets + np.einsum("ij,ij->i", normals, places), first, compound.places)
     lines = scan_lines(particle, n_lines)
     n = len(normals)
+    # Pivots, tangents and scales are for derivatives, which are not asked for here.
     still, parts = (np.zeros((n, 3)), np.zeros((n, 2, 3)), np.ones(n)), parts_for(planes)
     shared = fill_shared_with_lines(planes.normals, planes.offsets, *still, lines, parts)
     return jaccard(shared, 1.0, compound.volume)

@@ -96,6 +96,7 @@ def add_shared_charges(
     for k in range(len(radius)):
         r = radius[k]
         inside = 0.0
+        # Crossings beyond r add up to the winding number at r: 1 inside the particle.
         for j in range(first[k + 1] - 1, first[k] - 1, -1):
             if distance[j] <= r:
                 break
@@ -103,6 +104,8 @@ def add_shared_charges(
         if inside == 0.0:
             continue
         i = plane[k]
+        # A plane that moves outward by w moves the end of the ray by r w / h, and the volume by r^2 times
+        # that.
         share = size * inside * weight * r * r * r / offsets[i]
         charges[i, 0] += share
         for c in range(3):

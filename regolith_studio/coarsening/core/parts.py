@@ -27,6 +27,7 @@ HIDDEN = 1e-9
 JOGGLE = 1e-11
 """Distances of corners are changed by up to this share to find the triangles of the hull, so that no four
 corners lie in a plane."""
+# Gives a triangle without area a normal of 0 instead of none.
 NO_AREA = 1e-300
 N_EXPOSED, N_FACES, TOUCHING = 0, 1, 2
 
@@ -243,6 +244,8 @@ def _fill_corners(
         if status != FINE:
             return False, 0, 0
         for c in range(3):
+            # The next inner point is the mean of the corners: after a step the old one may come to lie
+            # outside.
             parts.inner[j, c] = 0.0
             for v in range(count, count + corners):
                 vertices[v, c] += inner[c]
@@ -250,6 +253,7 @@ def _fill_corners(
                 parts.inner[j, c] += vertices[v, c] / corners
             for i in range(start, stop):
                 parts.centroids[i, c] += inner[c]
+        # Three edges meet in each corner, and each edge has two.
         for e in range(links, links + 3 * corners // 2):
             for c in range(2):
                 edges[e, c] += count
@@ -291,6 +295,7 @@ def _overlap(parts: Parts) -> bool:
 def _is_one_body(areas: FloatArray, parts: Parts) -> bool:
     """Whether all parts that have an exposed surface hang together."""
     k, meet = len(parts.first) - 1, parts.meet
+    # The middle one outermost (Warshall), so that chains of any length are found in one go.
     for via in range(k):
         for one in range(k):
             for two in range(k):
@@ -334,6 +339,7 @@ def fill_hull(vertices: FloatArray, counts: IntArray, hull: Hull) -> float:
         distance = length(row(spokes, i))
         if not distance > 0.0:
             return 0.0
+        # The plane of the dual polyhedron lies at one over the distance of the corner.
         hull.distances[i] = hull.joggle[i] / distance
         for c in range(3):
             hull.directions[i, c] = spokes[i, c] / distance
@@ -351,6 +357,7 @@ def fill_hull(vertices: FloatArray, counts: IntArray, hull: Hull) -> float:
         return 0.0
     counts[N_FACES] = m
     for e in range(3 * m // 2):
+        # An edge of the dual polyhedron joins two triangles of the hull and separates two of its corners.
         start, end, one, two = hull.edges[e, 0], hull.edges[e, 1], hull.edges[e, 2], hull.edges[e, 3]
         hull.edges[e, 0], hull.edges[e, 1], hull.edges[e, 2], hull.edges[e, 3] = one, two, end, start
     return _fill_area_vectors(spokes, m, hull)
@@ -387,6 +394,8 @@ def add_hull_charges(
     for f in range(parts.counts[N_FACES]):
         for corner in range(3):
             for c in range(3):
+                # A corner that moves by dx changes the volume by a third of <area vector, dx> for each of its
+                # triangles.
                 hull.forces[hull.faces[f, corner], c] += hull.area_vectors[f, c] * size / 3.0
     for i in range(v):
         force = row(hull.forces, i)

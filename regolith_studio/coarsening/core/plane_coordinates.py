@@ -71,6 +71,7 @@ def fill_moved(
         shrink = 1.0 / np.sqrt(1.0 + t1 * t1 + t2 * t2)
         tilt = mixed(first, t1 * shrink, row(tangents[i], 1), t2 * shrink)
         normal = mixed(old, shrink, tilt, 1.0)
+        # <n', pivot> + s; the pivot lies in the plane, so that <n, pivot> = h.
         shifted[i] = step[3 * i] + offsets[i] * shrink + along(pivots, i, tilt)
         first = mixed(first, 1.0, normal, -dot(first, normal))
         first = mixed(first, 1.0 / length(first), first, 0.0)

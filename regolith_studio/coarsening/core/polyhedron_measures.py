@@ -59,6 +59,7 @@ class MeasuredPolyhedron(NamedTuple):
 def measure_polyhedron(normals: FloatArray, offsets: FloatArray) -> MeasuredPolyhedron:
     """Intersect half-spaces in general position and measure the result."""
     n = len(offsets)
+    # With three planes at each vertex there are 2 n - 4 vertices and 3 n - 6 edges.
     vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), dtype=np.int64)
     edges, areas, centroids = np.empty((3 * n, 4), dtype=np.int64), np.empty(n), np.empty((n, 3))
     work = workspace_for(n)
@@ -94,6 +95,7 @@ def fill_measures(
     for v in range(count):
         for k in range(3):
             a, b = triples[v, k], triples[v, (k + 1) % 3]
+            # Every edge is met at both of its ends, with its planes the other way round.
             if a < b:
                 edges[e, 0], edges[e, 1] = work.lists[NUMBER, work.owner[b, a]], v
                 edges[e, 2], edges[e, 3] = a, b
@@ -127,6 +129,7 @@ def _add_triangle(
     foot = mixed(normal, offsets[i], normal, 0.0)
     one = mixed(row(vertices, edges[e, way]), 1.0, foot, -1.0)
     two = mixed(row(vertices, edges[e, 1 - way]), 1.0, foot, -1.0)
+    # Signed, as the foot point may lie outside of the facet.
     area = 0.5 * dot(normal, cross(one, two))
     areas[i] += area
     for c in range(3):
@@ -158,6 +161,7 @@ def add_surface_charges(
         p, q = row(vertices, edges[e, 0]), row(vertices, edges[e, 1])
         n, m = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         edge = length(mixed(p, 1.0, q, -1.0))
+        # |n x m| / (1 + <n, m>) = tan(theta / 2).
         weight = size * edge * length(cross(n, m)) / max(1.0 + dot(n, m), 1e-12)
         for side in range(2):
             add_force(charges, edges[e, 2 + side], weight, mixed(p, 0.5, q, 0.5), pivots)

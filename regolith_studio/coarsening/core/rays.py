@@ -183,6 +183,7 @@ def crossed_by(
                 if e1 < 0.0 or (e1 == 0.0 and way < 0.0):
                     continue
                 e2 = way * dot(ca, u)
+                # All three vanish for a triangle that is seen edge-on.
                 if e2 < 0.0 or (e2 == 0.0 and way < 0.0) or e0 + e1 + e2 <= 0.0:
                     continue
                 if found < len(ray):
@@ -226,8 +227,10 @@ def bounds_on(points: FloatArray, face: IntArray, side: int) -> tuple[float, flo
             min(low_v, v / w),
             max(high_v, v / w),
         )
+    # All corners lie beyond one plane through the middle and an edge of the side.
     if max(behind, max(max(right, left), max(above, below))) == 3:
         return 1.0, -1.0, 1.0, -1.0
+    # A corner nearly beside the middle would be projected far out: the triangle may lie anywhere on the side.
     return (low_u, high_u, low_v, high_v) if nearly == 0 else (-1.0, 1.0, -1.0, 1.0)
 
 

@@ -8,6 +8,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.mesh import Mesh
 
+# Particles lie in their principal axes: lines along these would run within flat sides.
 TURN = np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0
 """Directions of the bundles, one a row: far from the principal axes."""
 MARGIN = 1e-6
@@ -46,6 +47,7 @@ def scan_lines(mesh: Mesh, n_lines: int) -> ScanLines:
     centre = (low + high) / 2.0
     mesh = mesh.moved(shift=-centre)
     radius = float(np.linalg.norm(mesh.vertices, axis=1).max()) * (1.0 + MARGIN)
+    # Each of the three bundles has pi r^2 / step^2 lines through the ball of unit volume.
     step = np.sqrt(3.0 * np.pi / n_lines) * (3.0 / (4.0 * np.pi)) ** (1.0 / 3.0)
     per_side = int(2.0 * radius / step) + 1
     grid = (np.arange(per_side) + 0.5) * step - 0.5 * per_side * step

@@ -171,6 +171,7 @@ def all_positive(factors: Factors, low: float, high: float) -> bool:
     if min(a0 + a1 * low, a0 + a1 * high) <= 0.0 or min(b0 + b1 * low, b0 + b1 * high) <= 0.0:
         return False
     ends = min(c0 + low * (c1 + low * c2), c0 + high * (c1 + high * c2))
+    # The third number is the middle Bernstein coefficient of the quadratic.
     return bool(min(ends, c0 + 0.5 * c1 * (low + high) + c2 * low * high) > 0.0)
 
 
@@ -199,6 +200,7 @@ def argmin_ratio(top: Quartic, bottom: Quartic, low: float, high: float) -> floa
         return low if first else high
     x = low
     for step in range(60):
+        # Two steps of regula falsi, which may approach from one side only, and one of bisection.
         x = low - at_low * (high - low) / (at_high - at_low) if step % 3 < 2 else 0.5 * (low + high)
         slope = derivative(top, x) * value(bottom, x) - value(top, x) * derivative(bottom, x)
         if slope < 0.0:
@@ -218,6 +220,7 @@ def crossing(one: Quartic, two: Quartic, low: float, high: float) -> float:
         return 0.5 * (low + high)
     x = low
     for step in range(60):
+        # Two steps of regula falsi, which may approach from one side only, and one of bisection.
         x = low - f_low * (high - low) / (f_high - f_low) if step % 3 < 2 else 0.5 * (low + high)
         f = value(one, x) - value(two, x)
         if f * f_low > 0.0:

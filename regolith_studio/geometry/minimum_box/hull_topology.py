@@ -169,23 +169,25 @@ def facets_of_hull(points: FloatArray, faces: IntArray) -> Facets | None:
     forward, backward = origin * len(points) + end, end * len(points) + origin
     order = np.argsort(forward)
     at = np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)
-    twin = order[at]
-    closed = np.array_equal(forward[twin], backward) and np.array_equal(twin[twin], np.arange(len(twin)))
+    opposite = order[at]
+    closed = np.array_equal(forward[opposite], backward) and np.array_equal(
+        opposite[opposite], np.arange(len(opposite))
+    )
     if not closed or not (np.bincount(origin, minlength=len(points)) > 0).all():
         return None
-    normals, blur = _face_normals(points, faces, twin)
+    normals, blur = _face_normals(points, faces, opposite)
     if not normals.any(axis=1).all():
         return None
     facet = np.full(len(faces), -1)
-    _fill_facets(normals, blur, np.argsort(blur), twin, facet, np.empty(len(faces), dtype=np.int64))
+    _fill_facets(normals, blur, np.argsort(blur), opposite, facet, np.empty(len(faces), dtype=np.int64))
     first, number = np.unique(facet, return_inverse=True)
-    one, two = number[np.arange(len(twin)) // 3], number[twin // 3]
-    kept = (np.arange(len(twin)) < twin) & (one != two)
+    one, two = number[np.arange(len(opposite)) // 3], number[opposite // 3]
+    kept = (np.arange(len(opposite)) < opposite) & (one != two)
     edges = np.column_stack([origin, end, one, two])[kept]
     return Facets(np.ascontiguousarray(points.T), normals[first], edges)
 
 
-def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[FloatArray, FloatArray]:
+def _face_normals(points: FloatArray, faces: IntArray, opposite: IntArray) -> tuple[FloatArray, FloatArray]:
     """Unit normals, and how far rounding may tilt them.
 
     A sliver takes that of the neighbour across its longest edge; if that has none, across its longest edge
@@ -200,10 +202,11 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[
     sound = heights > SLIVER
     blur = np.where(sound, EPSILON / np.where(sound, heights, 1.0), EPSILON / SLIVER)
     normals = np.where(sound[:, None], normals / np.where(sound, sizes, 1.0)[:, None], 0.0)
-    slivers, neighbours = np.flatnonzero(~sound), twin.reshape(-1, 3) // 3
+    slivers, neighbours = np.flatnonzero(~sound), opposite.reshape(-1, 3) // 3
     for attempt in range(2 * len(slivers)):
         for f in slivers[~normals[slivers].any(axis=1)]:
             share = lengths[f]
+            # Two slivers whose longest edge is the same would take from each other what neither has.
             if attempt >= len(slivers):
                 share = share * normals[neighbours[f]].any(axis=1)
             if share.any():
@@ -215,7 +218,12 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[
 
 @kernel_noalloc
 def _fill_facets(
-    normals: FloatArray, blur: FloatArray, order: IntArray, twin: IntArray, facet: IntArray, stack: IntArray
+    normals: FloatArray,
+    blur: FloatArray,
+    order: IntArray,
+    opposite: IntArray,
+    facet: IntArray,
+    stack: IntArray,
 ) -> None:
     """Fill the first face of the facet of each face; all its faces get the normal that rounding tilts least.
 
@@ -237,7 +245,7 @@ def _fill_facets(
             n -= 1
             face = stack[n]
             for h in range(3 * face, 3 * face + 3):
-                f = twin[h] // 3
+                f = opposite[h] // 3
                 if facet[f] >= 0:
                     continue
                 if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR + blur[f]:
@@ -317,6 +325,7 @@ def fill_edges_that_may_bound(
         one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         axis, first = unit(mixed(one, 1.0, two, 1.0)), row(arcs, e)
         second = cross(axis, first)
+        # From the middle of the arc to its end, and half a step of the quarter turn.
         turn = np.arccos(min(1.0, dot(axis, one))) + np.pi / 4.0 / QUARTER_TURNS
         cosine, sine = np.cos(turn), np.sin(turn)
         for step in range(QUARTER_TURNS):

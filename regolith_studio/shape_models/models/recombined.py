@@ -311,6 +311,7 @@ class Recombined(SurfaceSampler):
         place = np.searchsorted(self.forms.features[order, 2], convexities)
         first = np.clip(place - count // 2, 0, n - count)
         donors = first + rng.integers(count, size=len(targets))
+        # Its own surface on its own form would be a copy.
         itself = order[donors] == targets
         return np.asarray(order[np.where(itself, np.where(donors + 1 < n, donors + 1, donors - 1), donors)])
 
@@ -337,6 +338,7 @@ class Recombined(SurfaceSampler):
     def _trial_draws(self, number: int) -> tuple[FloatArray, IntArray]:
         """A chunk of particles for a round of calibration, and whose forms they have."""
         rng = np.random.default_rng(np.random.SeedSequence(number))
+        # All particles equally often, and the remainder out of a random order.
         targets = rng.permutation(np.resize(rng.permutation(len(self.surfaces)), CHUNK))
         return self._drawn_on(targets, rng)[0], targets
 
