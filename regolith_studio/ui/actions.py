@@ -21,7 +21,7 @@ from regolith_studio.messages import N_
 from regolith_studio.ui.keyboard import plain, shown_keys, with_keys
 from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.page import BREAK, PAGE_MENU, VIEW, ActionSpec, Page
-from regolith_studio.ui.theme import Theme, icon
+from regolith_studio.ui.theme import Theme, font_share, icon
 from regolith_studio.ui.translation import tr
 
 SHOWN = 14
@@ -57,7 +57,7 @@ class CommandPalette(QDialog):
         self.setWindowTitle(tr("Commands"))
         self.setObjectName("command_palette")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.resize(560, 420)
+        self.resize(round(560 * font_share()), 420)
         self._commands = tuple(commands)
         self.line = named(QLineEdit(), "command_line", tr("Command"))
         self.line.setPlaceholderText(tr("Type a command"))

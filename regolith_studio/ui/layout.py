@@ -9,6 +9,7 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
     QDialogButtonBox,
+    QFrame,
     QHBoxLayout,
     QLayout,
     QScrollArea,
@@ -272,6 +273,13 @@ class _Column(QScrollArea):
         if event.type() == QEvent.Type.LayoutRequest:
             self.updateGeometry()
         return super().eventFilter(watched, event)
+
+
+def framed(part: QWidget) -> QFrame:
+    """A part in a frame, as the views beside it have one."""
+    frame = named(QFrame(), role="card")
+    vbox(part, parent=frame, margins=(8, 6, 8, 4))
+    return frame
 
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:

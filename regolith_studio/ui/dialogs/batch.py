@@ -402,6 +402,7 @@ class BatchDialog(RunDialog):
 
     def _place(self) -> None:
         grid = QGridLayout()
+        grid.setHorizontalSpacing(2 * self.fontMetrics().averageCharWidth())
         for at, box in enumerate(self.results.values()):
             grid.addWidget(box, at // 3, at % 3)
         form = QFormLayout()

@@ -39,6 +39,7 @@ def ask_add_or_replace(preferences: Preferences, count: int, parent: QWidget) ->
     if kept in (ADD, REPLACE):
         return str(kept)
     box = named(QMessageBox(parent), "add_or_replace")
+    box.setIcon(QMessageBox.Icon.Question)
     box.setWindowTitle(tr("Open particles"))
     box.setText(tr_count(N_("1 particle is open."), N_("{count} particles are open."), count))
     box.setInformativeText(tr("Add the new ones to them, or replace them? Undo restores replaced ones."))

@@ -81,10 +81,29 @@ class CitingLabel(QLabel):
             super().setText(words)
 
 
+class _Heading(CitingLabel):
+    """A wrapped heading.
+
+    A part whose height depends on its width would let a column scroll where it could shrink.
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.setWordWrap(True)
+
+    def hasHeightForWidth(self) -> bool:
+        return False
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(super().minimumSizeHint().width(), max(self.heightForWidth(self.width()), 0))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.updateGeometry()
+
+
 def heading(text: str) -> QLabel:
-    label = named(CitingLabel(text), role="heading")
-    label.setWordWrap(True)
-    return label
+    return named(_Heading(text), role="heading")
 
 
 def hint_label(text: str = "", role: str = "hint") -> QLabel:

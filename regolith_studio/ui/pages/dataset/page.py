@@ -40,6 +40,7 @@ from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import (
     equal_parts,
+    framed,
     hbox,
     named,
     scrolled,
@@ -563,7 +564,7 @@ class DatasetPage(PageWidget):
         )
         for plot in (self.quality, self.distribution):
             plot.fit_to_font()
-        upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
+        upper = equal_parts(Qt.Orientation.Horizontal, (framed(self.quality), framed(self.distribution)))
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (scrolled(self.exports), tr("Exported"))]
         shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]

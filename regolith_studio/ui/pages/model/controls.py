@@ -31,7 +31,7 @@ from regolith_studio.shape_models.materials import LOG_FIELD
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
-from regolith_studio.ui.layout import STRETCH, hbox, named, side_by_side, vbox
+from regolith_studio.ui.layout import STRETCH, framed, hbox, named, side_by_side, vbox
 from regolith_studio.ui.pages.model.evaluation import StudyTableView
 from regolith_studio.ui.result_card import ResultView
 from regolith_studio.ui.theme import Theme
@@ -463,8 +463,10 @@ class LiveShape(QWidget):
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Another particle"))
         self.reset.setObjectName("model_reset_spectrum")
         self.another.setObjectName("model_another")
+        left = QWidget()
+        vbox((self.spectrum, 1), hbox(self.reset, STRETCH, self.another), parent=left)
         hbox(
-            (vbox((self.spectrum, 1), hbox(self.reset, STRETCH, self.another, margins=(8, 0, 8, 6))), 3),
+            (framed(left), 3),
             (self.frame, 2),
             parent=self,
         )

@@ -70,7 +70,7 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
 
     def _arrange(self) -> None:
         grid = QGraphicsGridLayout()
-        grid.setContentsMargins(CANVAS_MARGIN, CANVAS_MARGIN, CANVAS_MARGIN, CANVAS_MARGIN)
+        grid.setContentsMargins(CANVAS_MARGIN, CANVAS_MARGIN, LAST_LABEL, CANVAS_MARGIN)
         grid.setSpacing(0)
         grid.addItem(self._box, *_BOX)
         for side, place in _PLACES.items():
@@ -137,6 +137,10 @@ WIDER = (1, 2, 4, 10)
 """Multiples of the distance of ticks, until their labels have room."""
 
 
+LAST_LABEL = 12
+"""Pixels that the label of the last tick may be behind the end of its axis."""
+
+
 class FittedAxis(pg.AxisItem):  # type: ignore[misc]
     """An axis whose label fits its length: with a smaller font or elided where the axis is short."""
 
@@ -147,6 +151,8 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
     def __init__(self, orientation: str) -> None:
         super().__init__(orientation)
         self.autoSIPrefix = False
+        if orientation == "bottom":
+            self.setStyle(hideOverlappingLabels=LAST_LABEL)
 
     def set_label_text(self, text: str, colour: str, font: QFont) -> None:
         """Label the axis with rich text in a colour, in this font where there is room."""
