@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps, settings_of
+from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.methods.compound import CompoundSettings
@@ -16,6 +17,7 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
@@ -122,13 +124,19 @@ def test_that_a_result_travels_between_processes(exact: CoarseningResult) -> Non
 
 
 def test_that_the_steps_begin_with_a_polyhedron_and_end_with_the_result(particle: Mesh) -> None:
-    steps = coarsening_steps(particle, 12, "exact")
+    target = Target.of(particle)
+    steps = coarsening_steps(target, 12, "exact")
     first = next(steps)
     assert first.polyhedron is not None
     assert first.mesh is not None
     assert first.mesh.centroid == pytest.approx(particle.centroid, abs=0.2 * particle.volume ** (1 / 3))
-    shown = [step.polyhedron for step in steps]
-    assert any(polyhedron is not None for polyhedron in shown)
+    shown = [step for step in (first, *steps) if step.polyhedron is not None]
+    assert len(shown) > 1
+    for step in shown:  # Eq. 9 by the public descriptors, of the very polyhedron
+        solid = step.polyhedron.moved(rotation=target.axes, scale=1.0 / target.scale)
+        errors = relative_errors(target.descriptors, describe(solid, LOSS_KEYS))
+        overlap = target.jaccard_distance(solid.half_spaces)
+        assert step.loss == pytest.approx(loss(LossWeights.from_preset("all"), errors, overlap), abs=1e-6)
 
 
 def test_that_a_weight_of_zero_frees_a_descriptor(particle: Mesh) -> None:

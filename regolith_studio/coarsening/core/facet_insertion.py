@@ -29,6 +29,7 @@ def insert_lost_facets(
     depth: float,
     most: int | None = None,
     axes: FloatArray | None = None,
+    passed: int = 0,
 ) -> tuple[int, FloatArray, FloatArray]:
     """Replace each half-space without a facet by a cut across the corner that hangs out farthest.
 
@@ -44,6 +45,8 @@ def insert_lost_facets(
     axes
         Of the polyhedron's box, shape (3, 3): corners that touch it are left alone, where others have room,
         since a cut there would change the box to first order.
+    passed
+        So many corners that hang out farthest are passed over.
 
     Returns
     -------
@@ -67,6 +70,9 @@ def insert_lost_facets(
         at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
         if not rooms[at] > 0.0:
             free[:] = True
+            at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
+        for _ in range(passed):
+            free[at] = False
             at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
         if not rooms[at] > 0.0:
             break

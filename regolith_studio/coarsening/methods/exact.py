@@ -22,8 +22,8 @@ class ExactSettings:
     Parameters
     ----------
     level
-        ``fast`` (two starts, up to three more where these differ) or ``best`` (ten, the best three of which
-        are continued: better overlap).
+        ``fast`` (two starts, up to three more where these differ) or ``best`` (ten more, the better half of
+        which go on after 30 steps, and the best three to the end: better overlap).
     retries
         Further starts where none keeps what is to be kept.
 

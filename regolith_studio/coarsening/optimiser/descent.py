@@ -293,8 +293,8 @@ def gather_rows(body: Body, prices: Prices, work: Steps) -> int:
         work.low[r], work.high[r] = bounds_of(r, body, prices)
         asked = work.low[r] < work.high[r]
         work.residuals[r] = body.residuals[r] if asked else 0.0
-        for j in range(size):
-            work.rows[r, j] = body.rows[r, j] if asked else 0.0
+        for j in range(size if asked else 0):
+            work.rows[r, j] = body.rows[r, j]
     for b in range(1, body.counts[N_BOXES]):
         work.low[m], work.high[m], work.residuals[m] = 0.0, LOCK, PRESSING - body.slack[b]
         for j in range(size):
@@ -321,6 +321,7 @@ def fill_products(m: int, work: Steps) -> None:
     """Products of the metric with rows and gradient, and of these with the rows.
 
     Sums run along the rows of the metric, element by element, so that vectors of any width give the same.
+    Most rows take no part and are passed over.
     """
     size = len(work.gradient)
     for r in range(m + 1):
@@ -328,17 +329,18 @@ def fill_products(m: int, work: Steps) -> None:
             work.across[r, j] = 0.0
     for i in range(size):
         for r in range(m + 1):
-            factor = work.gradient[i] if r == m else work.rows[r, i]
+            factor = work.gradient[i] if r == m else (work.rows[r, i] if work.low[r] < work.high[r] else 0.0)
             if factor != 0.0:
                 for j in range(size):
                     work.across[r, j] += factor * work.metric[i, j]
     for r in range(m):
+        asked = work.low[r] < work.high[r]
         for s in range(m):
             work.products[r, s] = 0.0
-            for j in range(size):
+            for j in range(size if asked and work.low[s] < work.high[s] else 0):
                 work.products[r, s] += work.rows[r, j] * work.across[s, j]
         work.slopes[r] = 0.0
-        for j in range(size):
+        for j in range(size if asked else 0):
             work.slopes[r] += work.rows[r, j] * work.across[m, j]
 
 
@@ -357,12 +359,15 @@ def solve_step(m: int, radius: float, work: Steps) -> tuple[float, float]:
             work.factor[:m, : m + 1],
             work.multipliers[:m],
         )
+        for j in range(size):
+            work.step[j] = work.across[m, j]
+        for r in range(m):
+            if work.multipliers[r] != 0.0:
+                for j in range(size):
+                    work.step[j] += work.multipliers[r] * work.across[r, j]
         length = 0.0
         for j in range(size):
-            value = work.across[m, j]
-            for r in range(m):
-                value += work.multipliers[r] * work.across[r, j]
-            work.step[j] = -share * value
+            work.step[j] = -share * work.step[j]
             length = max(length, abs(work.step[j]))
         if not length > radius:
             break
@@ -373,7 +378,7 @@ def solve_step(m: int, radius: float, work: Steps) -> tuple[float, float]:
     # g d + d H d / 2 with H d = -t (g + R' l): half of g d less half of the multipliers' share
     for r in range(m):
         after, turn = work.residuals[r], 0.0
-        for j in range(size):
+        for j in range(size if work.low[r] < work.high[r] else 0):
             turn += work.rows[r, j] * work.step[j]
         after += turn
         before = max(work.low[r] * work.residuals[r], work.high[r] * work.residuals[r])

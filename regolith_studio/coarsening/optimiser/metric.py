@@ -38,7 +38,8 @@ def fill_first_metric(
     n = len(body.offsets)
     floor = max(0.3 * body.numbers[SURFACE] / n, 1e-12)
     work.metric[:, :] = 0.0
-    fill_curvature(body, body.parts, rays, floor, work)
+    if not steady:
+        fill_curvature(body, body.parts, rays, floor, work)
     for i in range(n):
         shift = CURVATURE / max(body.areas[i], floor) / price if i >= held and is_free(i, body.parts) else 0.0
         if steady:

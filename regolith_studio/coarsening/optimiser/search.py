@@ -1,6 +1,6 @@
 """Starts of the descent, one after the other, and the best of what they lead to."""
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,25 +10,19 @@ from regolith_studio.coarsening.core.facet_insertion import MIN_FACET
 from regolith_studio.coarsening.core.plane_coordinates import tangents_of
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
 from regolith_studio.coarsening.loss import LossFunction, loss
-from regolith_studio.coarsening.lower_bounds import (
-    max_sphericity,
-    sphericity_reason,
-    volume_is_preferred,
-)
+from regolith_studio.coarsening.lower_bounds import sphericity_reason, volume_is_preferred
 from regolith_studio.coarsening.optimiser.body import Prices
-from regolith_studio.coarsening.optimiser.descent import (
-    LOCK,
-    MAX_RADIUS,
-    descend,
-)
+from regolith_studio.coarsening.optimiser.descent import LOCK, MAX_RADIUS, descend
 from regolith_studio.coarsening.optimiser.memory import Memory, Rays, memory_for
 from regolith_studio.coarsening.optimiser.starts import (
     N_SIDES,
     box_start,
+    first_starts,
     grouped_start,
     hull_triangles,
     own_planes,
     round_start,
+    stage_below,
     with_cuts,
     with_waiting,
 )
@@ -51,8 +45,9 @@ VOLUME_SHARE, SPHERICITY_SHARE = 3.0, 0.3
 any polyhedron can have, never does."""
 TIE_BREAK_PRICE = 1e-2
 """Price of the overlap where it has none: shapes that only meet descriptors drift away from the particle."""
-FREE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 60, 30, 120
-"""On the overlap alone, on the whole loss, after half-spaces became cuts, and of the best at the end."""
+FREE_STEPS, RACE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 30, 60, 30, 120
+"""On the overlap alone, on the whole loss until the best go on, and until the end, after half-spaces became
+cuts, and of the best at the end."""
 CONTINUATIONS = 3
 """Descents that have not met all by then go on so often, with a new metric: most are still on the way."""
 SHORTER, NEARLY_MET = (1.0, 1.0, 0.1, 2e-3, 2e-3, 2e-3, 2e-3), 1e-2
@@ -62,33 +57,22 @@ GROWTH_STEPS = 25
 """After each stage of cuts on the way from few half-spaces to many."""
 ROUND_STARTS = ("round", "round", "grouped")
 """For particles that are rounder than the number of facets can be (Goldberg)."""
-FEW, MIDDLE = 12, 30
-"""Half-spaces to grow from: after a stage the second instead of the first."""
-FIRST_STARTS = (
-    (0.2, (("grouped", FEW), ("grouped", FEW), ("round", 0), ("grouped", 0))),
-    (0.12, (("grouped", FEW), ("round", 0), ("grouped", 0))),
-    (-np.inf, (("grouped", 0), ("round", 0))),
-)
-"""Kinds of starts and their half-spaces (0: as many as are asked for), by how much more surface a particle
-has than its hull (logarithm). Measured on 52 particles: where much surface is to be kept, starts with few
-half-spaces to grow from end near each other and others do not; elsewhere they are worse."""
-STAGES = (20, 50, 125, 312)
-"""Numbers of facets whose results larger numbers grow from, so that more facets are not worse."""
 DIRECT = 62
 """Where more facets are asked for, no start has so many: growth leads to as much with less effort."""
-ALIKE, FACTOR = 1.25, 2.5
-"""Where less than the first times as many are asked for, all begin at once; half-spaces after and before each
-stage of cuts."""
+FACTOR = 2.5
+"""Half-spaces after and before each stage of cuts."""
 ROUNDS = 3
 """At most so many times half-spaces without a facet become cuts."""
 FREE_RADIUS, FIRST_RADIUS, FURTHER_RADIUS = 0.1, 0.2, 0.05
 """Longest moves at first; all but the first shrink with the square root of the number of facets."""
 CUT_COST = 2e-3
 """By how much the loss may rise for facets that are put back."""
-CUT_DEPTHS = (0.06, 0.02, 0.2)
-"""Depths of cuts that only give half-spaces a facet, as shares of the way to the next corner; the later ones
-where a single cut fails."""
-CUT_ROUNDS, CUT_STEPS, CUT_RADIUS = 24, 8, 0.05
+CUT_TRIALS = ((0.06, 0), (0.02, 0), (0.2, 0), (0.06, 1), (0.06, 3), (0.06, 9))
+DEEP, DEEP_TRIALS = 200, ((0.2, 0), (0.06, 0), (0.3, 0), (0.2, 1), (0.2, 3), (0.2, 9))
+"""Depths of cuts that only give half-spaces a facet, as shares of the way to the next corner, and how many
+corners are passed over; the later ones where a single cut fails. The second where there are more facets than
+that: their corners must leave room for cuts across the corners that they make."""
+CUT_ROUNDS, CUT_STEPS, CUT_RADIUS = 40, 8, 0.05
 """Attempts to put facets back, steps of each, and their longest moves at first."""
 FURTHER_STARTS = 3
 """Where all is kept, but a half-space bounds no facet or the best two differ by more than the next factor."""
@@ -103,13 +87,14 @@ WORD_LENGTH = 2.0**-40
 
 @dataclass(frozen=True)
 class SearchEffort:
-    """Starts, and how many of the best of them descend until they come to rest."""
+    """Starts, how many of the best come to rest, and how many of each size go on after a race; 0: all."""
 
     starts: int
     finalists: int
+    raced: int = 0
 
 
-EFFORTS = {"fast": SearchEffort(2, 1), "best": SearchEffort(10, 3)}
+EFFORTS = {"fast": SearchEffort(2, 1), "best": SearchEffort(10, 3, raced=5)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +109,8 @@ class Candidate:
         The loss as the descent sees it.
     worst
         Largest residual of what is to be kept.
+    errors
+        Relative errors of the terms (Eq. 8), for the box that the descent follows.
     n_facets
         Half-spaces that bound a facet.
     axes
@@ -133,6 +120,7 @@ class Candidate:
     half_spaces: HalfSpaces
     merit: float
     worst: float
+    errors: Mapping[str, float]
     n_facets: int
     axes: FloatArray | None
 
@@ -253,19 +241,23 @@ class Search:
             return self._result(own, own_reason(own.n_facets, self._n_facets), 0)
         yield from self._of_less_effort()
         few = yield from self._of_fewer()
-        tried = 0
+        small = [*few]
+        while self._needed == 0 and small:
+            yield from self._record(0, self._grown(small.pop(0)))
+        tried, race = 0, list[Candidate]()
         for start, held in self._starts():
             if self._good_enough(tried, (*few, *self._found)):
                 break
             tried += 1
             if tried == 1 and not few and not self._found:
                 yield self._step(0, start)
-            found = self._from_start(start, held)
-            if found is not None and len(found.half_spaces.offsets) == self._n_facets:
-                yield from self._record(tried, found)
-            elif found is not None:
-                few.append(found)
-        for found in sorted(few, key=lambda each: each.rank(0))[: self._effort.finalists]:
+            for found in self._ends(start, held, tried, race):
+                if len(found.half_spaces.offsets) == self._n_facets:
+                    yield from self._record(tried, found)
+                else:
+                    small.append(found)
+                    few.append(found)
+        for found in sorted(small, key=lambda each: each.rank(0))[: self._effort.finalists]:
             yield from self._record(tried, self._grown(found))
         if self._fewer is not None:
             yield from self._record(tried, self._more(self._fewer, self._n_facets, STEPS))
@@ -281,9 +273,9 @@ class Search:
             yield from self._record(tried, even)
         yield from self._made_whole(tried, few)
         solid, achieved = self._confirmed()
-        value = self._loss_of(solid.half_spaces)
-        if not self._history or abs(value - self._history[-1]) > SAME_LOSS:
-            yield self._step(tried, solid.half_spaces)
+        errors = relative_errors(self._target.descriptors, achieved)
+        if not self._history or abs(self._loss_of(solid.half_spaces, errors) - self._history[-1]) > SAME_LOSS:
+            yield self._better(tried, solid.half_spaces, errors)
         descriptors, free = self._target.descriptors, self._free_distance
         reason = reason_for(descriptors, achieved, self._keep, self._n_facets, solid.n_facets, free)
         return self._result(solid, reason, tried, achieved)
@@ -332,11 +324,16 @@ class Search:
                 return
 
     def _good_enough(self, tried: int, found: Sequence[Candidate]) -> bool:
-        """Whether all is kept, with all facets, and by two starts about as well, or after further starts."""
+        """Whether all is kept, with all facets, and by two starts about as well, or after further starts.
+
+        Where fewer facets have been searched already, it is enough that they could grow.
+        """
+        if self._needed == 0 and any(each.met and each.n_facets == self._n_facets for each in self._found):
+            return True
         met = sorted(each.merit for each in found if each.met)
         whole = any(each.n_facets == len(each.half_spaces.offsets) for each in found if each.met)
         alike = len(met) > 1 and met[1] <= SPREAD * met[0]
-        return bool(met) and tried >= self._needed + (0 if whole and alike else FURTHER_STARTS)
+        return bool(met) and tried >= max(1, self._needed) + (0 if whole and alike else FURTHER_STARTS)
 
     def _starts(self) -> Iterator[tuple[HalfSpaces, int]]:
         """As many as the effort and the retries allow, some with few half-spaces to grow from.
@@ -355,17 +352,35 @@ class Search:
             else:
                 yield grouped_start(self._target, self._triangles, size, self._rng), 0
 
-    def _from_start(self, start: HalfSpaces, held: int) -> Candidate | None:
-        """On the overlap alone, then on the whole loss."""
+    def _ends(self, start: HalfSpaces, held: int, tried: int, race: list[Candidate]) -> Sequence[Candidate]:
+        """Where a start leads; nothing while others are still to be raced, then where the best of them do."""
+        first, raced = self._needed, self._effort.raced
+        if not 0 < raced < first or tried > first:
+            found = self._from_start(start, held, STEPS)
+            return [] if found is None else [self._continued(found, held)]
+        begun = self._from_start(start, held, RACE_STEPS)
+        race += [] if begun is None else [begun]
+        ends = []
+        for size in sorted({len(each.half_spaces.offsets) for each in race}) if tried == first else ():
+            same = [each for each in race if len(each.half_spaces.offsets) == size]
+            for each in sorted(same, key=lambda each: each.rank(0))[:raced]:
+                further = self._descended(each.half_spaces, STEPS, FURTHER_RADIUS) or each
+                ends.append(self._continued(further, 0))
+        return ends
+
+    def _from_start(self, start: HalfSpaces, held: int, steps: int) -> Candidate | None:
+        """On the overlap alone, then so many steps on the whole loss."""
         planes = _planes_of(start)
         sound, _, _, distance = self._descend(self._free_prices, planes, FREE_STEPS, FREE_RADIUS, held=held)
         if sound:
             self._free_distance = min(self._free_distance, distance)
             start = HalfSpaces(planes[0], planes[1])
-        found = self._descended(start, STEPS, FIRST_RADIUS, held=held)
-        share = 1.0
+        return self._descended(start, steps, FIRST_RADIUS, held=held)
+
+    def _continued(self, found: Candidate, held: int) -> Candidate:
+        """Until all is kept, as far as that can be; then half-spaces without a facet become cuts."""
         for tried in range(CONTINUATIONS + len(SHORTER)):
-            if found is None or found.met or (tried >= CONTINUATIONS and found.worst > NEARLY_MET):
+            if found.met or (tried >= CONTINUATIONS and found.worst > NEARLY_MET):
                 break
             share, nearly = (1.0, *SHORTER)[max(0, tried - CONTINUATIONS + 1)], tried >= CONTINUATIONS
             radius = share * FURTHER_RADIUS
@@ -390,13 +405,13 @@ class Search:
             # the free descent may lose facets that cannot be put back
             even = self._descended(begun.half_spaces, steps, FURTHER_RADIUS, steady=True)
             self._found += [begun] if even is None else [begun, even]
-        found = self._settled(self._descended(begun.half_spaces, steps, FURTHER_RADIUS))
-        return begun if found is None or begun.rank(0) < found.rank(0) else found
+        found = self._settled(self._descended(begun.half_spaces, steps, FURTHER_RADIUS) or begun)
+        return begun if begun.rank(0) < found.rank(0) else found
 
-    def _settled(self, found: Candidate | None, held: int = 0) -> Candidate | None:
+    def _settled(self, found: Candidate, held: int = 0) -> Candidate:
         """Half-spaces without a facet become cuts as long as the loss falls by them."""
         for _ in range(ROUNDS):
-            if found is None or found.n_facets == len(found.half_spaces.offsets):
+            if found.n_facets == len(found.half_spaces.offsets):
                 break
             cut = with_cuts(self._target, found.half_spaces)
             further = self._descended(cut, FURTHER_STEPS, FURTHER_RADIUS, held=held)
@@ -412,11 +427,13 @@ class Search:
         """
         best, most = found, found.merit + CUT_COST * self._prices.overlap
         size, failures = len(found.half_spaces.offsets), 0
+        trials = CUT_TRIALS if size <= DEEP else DEEP_TRIALS
         cuts = size - best.n_facets
         for _ in range(CUT_ROUNDS):
-            if cuts == 0 or failures == len(CUT_DEPTHS):
+            if cuts == 0 or failures == len(trials):
                 break
-            cut = with_cuts(self._target, best.half_spaces, cuts, CUT_DEPTHS[failures], best.axes)
+            depth, passed = trials[failures]
+            cut = with_cuts(self._target, best.half_spaces, cuts, depth, best.axes, passed)
             more = self._descended(cut, CUT_STEPS, CUT_RADIUS, steady=True, restoring=True, axes=best.axes)
             worse = more is None or more.merit > most or (found.met and not more.met)
             if more is None or worse or more.n_facets <= best.n_facets:
@@ -447,7 +464,12 @@ class Search:
         n_real = int(np.count_nonzero(measure_polyhedron(planes[0], planes[1]).areas >= MIN_FACET))
         needs_box = bool((self._prices.low[2:] < self._prices.high[2:]).any())
         box = self._memory[len(start.offsets)].scratch.start.copy() if needs_box else None
-        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, n_real, box)
+        descriptors, residuals = self._target.descriptors, self._memory[len(start.offsets)].residuals
+        volume = self._prices.wanted[0] * (1.0 + residuals[0])
+        errors = dict(zip(TERMS, np.abs(residuals), strict=True))
+        for key in ("volume", "convex_hull_volume"):  # of a convex polyhedron they are one
+            errors[key] = abs(volume / descriptors[key] - 1.0)
+        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, errors, n_real, box)
 
     def _descend(
         self,
@@ -489,23 +511,32 @@ class Search:
         best = min((self._rank(each) for each in self._found), default=None)
         self._found.append(found)
         if best is None or self._rank(found) < best:
-            yield self._step(tried, found.half_spaces)
+            # where not all is kept, another box than that of the descent may be the least
+            yield self._better(tried, found.half_spaces, found.errors if found.met else None)
 
-    def _step(self, number: int, half_spaces: HalfSpaces) -> MethodStep:
-        value = self._loss_of(half_spaces)
-        if number > 0:
-            # less of Eq. 9 that misses more of what is to be kept was no step towards this
-            while self._history and self._history[-1] < value:
-                self._history.pop()
-            self._history.append(value)
+    def _better(self, number: int, half_spaces: HalfSpaces, errors: Mapping[str, float] | None) -> MethodStep:
+        """A step that the curve of the loss takes up."""
+        step = self._step(number, half_spaces, errors)
+        # less of Eq. 9 that misses more of what is to be kept was no step towards this
+        while self._history and self._history[-1] < step.loss:
+            self._history.pop()
+        self._history.append(step.loss)
+        return step
+
+    def _step(
+        self, number: int, half_spaces: HalfSpaces, errors: Mapping[str, float] | None = None
+    ) -> MethodStep:
+        value = self._loss_of(half_spaces, errors)
         return MethodStep(self._before + number, self._before + self._most, value, half_spaces)
 
-    def _loss_of(self, half_spaces: HalfSpaces) -> float:
+    def _loss_of(self, half_spaces: HalfSpaces, errors: Mapping[str, float] | None) -> float:
         """Eq. 9 with as many rays as for the result, so that the curve of the steps ends there."""
-        found = self._judge(half_spaces.normals, half_spaces.offsets)
-        if found is None:
-            return np.inf
-        return loss(self._weights, found.errors, self._target.jaccard_distance(half_spaces))
+        if errors is None:
+            found = self._judge(half_spaces.normals, half_spaces.offsets)
+            if found is None:
+                return np.inf
+            errors = found.errors
+        return loss(self._weights, errors, self._target.jaccard_distance(half_spaces))
 
     def _rank(self, candidate: Candidate) -> tuple[bool, bool, float]:
         return candidate.rank(self._n_facets)
@@ -547,39 +578,8 @@ class Search:
             {"starts": float(tried), "exact": float(not missed)},
             polyhedron=solid,
             achieved=achieved,
-            free_distance=self._free_distance if tried else None,
+            free_distance=self._free_distance if self._free_distance < np.inf else None,
         )
-
-
-def stage_below(target: Target, n_facets: int, keeps_sphericity: bool) -> int:
-    """The largest of :data:`STAGES` that a search for `n_facets` begins with; 0 where none could be met."""
-    wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
-    stages = [size for size in STAGES if ALIKE * size < n_facets and max_sphericity(size) > wanted]
-    return max(stages, default=0)
-
-
-def first_starts(
-    target: Target, n_facets: int, keeps_sphericity: bool, stage: int
-) -> tuple[tuple[str, int], ...]:
-    """Kinds of starts and their half-spaces, one after the other, to be repeated.
-
-    A particle has more surface than its convex hull as a rule. A convex polyhedron that is to have as much
-    must be edgy, which few facets are by themselves; begun with many, facets are lost on the way to it.
-    Numbers whose Goldberg bound is below the particle's sphericity are left out.
-    """
-    surplus = more_surface_than_hull(target) if keeps_sphericity else -np.inf
-    wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
-    few = MIDDLE if stage else FEW
-    usable = ALIKE * few < n_facets and max_sphericity(few) > wanted
-    plan = next(plan for least, plan in FIRST_STARTS if surplus >= least)
-    return tuple((kind, few if size and usable else n_facets) for kind, size in plan)
-
-
-def more_surface_than_hull(target: Target) -> float:
-    """Logarithm of the particle's surface over that of its convex hull, at the same volume."""
-    hull = target.mesh.hull
-    of_hull = np.cbrt(36.0 * np.pi * hull.volume**2) / hull.surface_area
-    return float(np.log(of_hull / target.descriptors["sphericity"]))
 
 
 def _planes_of(start: HalfSpaces) -> Planes:
