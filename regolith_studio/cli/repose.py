@@ -346,7 +346,7 @@ def drum(
     done = _simulate(dataset, output, request, filling, overwrite, jobs)
     document, angles = dict(done.document), done.measurement
     if measured is not None and isinstance(angles, DrumMeasurement):
-        document["measured"] = compare_angles(angles, measured, measured_error)
+        document["measured"] = compare_angles(angles.angle, angles.interval, measured, measured_error)
     if json:
         print_json(document)
         return
@@ -372,10 +372,10 @@ def _simulate(
     from regolith_studio.jobs.repose_jobs import prepared_case, simulate_prepared
     from regolith_studio.jobs.runners.process_pool import cores
 
-    prepared = prepared_case(dataset, request.case, filling)
+    request = replace(request, filling=filling, overwrite=overwrite, threads=jobs or cores())
+    prepared = prepared_case(dataset, request)
     before = [*scaling_report(prepared).sentences, *prepared.filling_notes]
     print_errors(before)
-    request = replace(request, overwrite=overwrite, threads=jobs or cores())
     done: ReposeRun = run_with_progress(simulate_prepared(prepared, output, request))
     print_errors(note for note in run_notes(done.document) if note not in before)
     return done

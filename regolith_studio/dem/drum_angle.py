@@ -256,11 +256,11 @@ def _warnings(falls: int, bend: float, slip: float) -> list[str]:
     return sentences
 
 
-def compare_angles(measurement: DrumMeasurement, angle: float, error: float) -> dict[str, Any]:
+def compare_angles(simulated: float, interval: Interval, angle: float, error: float) -> dict[str, Any]:
     """The simulated less a measured dynamic angle of standard error `error`, with interval, in degrees."""
     quantile = float(norm.ppf(0.5 + CONFIDENCE / 2))
-    half = float(np.hypot(np.ptp(measurement.interval) / 2, quantile * error))
-    difference = measurement.angle - angle
+    half = float(np.hypot(np.ptp(interval) / 2, quantile * error))
+    difference = simulated - angle
     return {
         "angle_deg": angle,
         "standard_error_deg": error,

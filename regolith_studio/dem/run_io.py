@@ -27,7 +27,7 @@ from regolith_studio.io.atomic import exchange, remove_quietly
 from regolith_studio.io.file_names import natural_key
 from regolith_studio.io.output_lock import NEW, hidden_beside, output_lock
 from regolith_studio.io.own_files import canonical_json, read_arrays, read_json
-from regolith_studio.messages import Message, from_json, to_json
+from regolith_studio.messages import N_, Message, from_json, to_json
 from regolith_studio.version import __version__
 
 Measured = ReposeMeasurement | DrumMeasurement | NotAPileError
@@ -216,6 +216,35 @@ def with_filling(prepared: PreparedCase, folder: Path) -> PreparedCase:
         if not np.isclose(was, now)
     ]
     return replace(prepared, filling=state, filling_notes=tuple(notes))
+
+
+def with_kept_filling(
+    prepared: PreparedCase, engine: Engine, settings: Any, folders: Sequence[Path]
+) -> PreparedCase:
+    """The case with the first of the fillings of earlier runs that this engine would make again.
+
+    The case itself where there is none. A run that began with a filling is passed by: its document does
+    not say with which friction that was made.
+    """
+    version, chosen = engine.find().version, canonical_json(asdict(settings))
+    for folder in folders:
+        try:
+            document = read_run(folder).document
+            made_by = document["engine"]
+            if (
+                (made_by["key"], made_by["version"]) != (engine.key, version)
+                or canonical_json(made_by["settings"]) != chosen
+                or document["case"]["seed"] != prepared.case.seed
+                or document["filling"]["sha256"] is not None
+            ):
+                continue
+            filled = with_filling(prepared, folder)
+        except (FileError, KeyError, TypeError):
+            continue
+        if not filled.filling_notes:
+            note = Message(N_("The filled cylinder of {run} is used again."), run=folder.name)
+            return replace(filled, filling_notes=(note,))
+    return prepared
 
 
 def save_shapes(folder: Path, prepared: PreparedCase) -> Path:

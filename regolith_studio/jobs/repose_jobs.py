@@ -30,6 +30,7 @@ from regolith_studio.dem.run_io import (
     snapshot_files,
     staged_run,
     with_filling,
+    with_kept_filling,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
 from regolith_studio.dem.verification.certificate import MEASUREMENTS, QUICK, measure_lines, verifiable_engine
@@ -63,6 +64,9 @@ class ReposeRequest:
         Of an engine that uses several; they change no result.
     filling
         Folder of a run of the same particles, whose filled cylinder is lifted again; ``None`` to fill it.
+    kept
+        Folders of runs; where `filling` names none, the first filling among them is taken that the same
+        engine made of the same particles with the same friction.
 
     Raises
     ------
@@ -77,6 +81,7 @@ class ReposeRequest:
     overwrite: bool = False
     threads: int = 1
     filling: Path | None = None
+    kept: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:
         if self.case.drum is None:
@@ -108,14 +113,19 @@ def repose_steps(dataset_folder: Path, folder: Path, request: ReposeRequest) -> 
     is stopped or fails, and ``repose.json`` says so; but it replaces no finished run. A run that was killed
     or stopped goes on from the last state of its engine when the same is asked for again.
     """
-    prepared = prepared_case(dataset_folder, request.case, request.filling)
+    prepared = prepared_case(dataset_folder, request)
     return (yield from simulate_prepared(prepared, folder, request))
 
 
-def prepared_case(dataset_folder: Path, case: ReposeCase, filling: Path | None) -> PreparedCase:
-    """The drawn particles, in the filling of an earlier run if one is named."""
-    prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
-    return prepared if filling is None else with_filling(prepared, filling)
+def prepared_case(dataset_folder: Path, request: ReposeRequest) -> PreparedCase:
+    """The drawn particles, in the filling of an earlier run if one is named or kept."""
+    prepared = prepare(read_dataset(dataset_folder), request.case, dataset_hash(dataset_folder))
+    if request.filling is not None:
+        return with_filling(prepared, request.filling)
+    engine = engine_named(request.engine)
+    if not isinstance(engine, ResumableEngine):
+        return prepared
+    return with_kept_filling(prepared, engine, request.settings or engine.Settings(), request.kept)
 
 
 def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeRequest) -> Steps:
@@ -239,14 +249,14 @@ def measure_result(
         return refusal
 
 
-def preview_repose(dataset_folder: Path, case: ReposeCase, filling: Path | None = None) -> Steps:
+def preview_repose(dataset_folder: Path, request: ReposeRequest) -> Steps:
     """The particles of a case before they fall, or in the filling of an earlier run.
 
     Returns (:class:`PreparedCase`, :class:`ParticleState`). The state is empty where there are more than
     `MAX_PREVIEWED`.
     """
     yield Started(N_("Drawing particles"))
-    prepared = prepared_case(dataset_folder, case, filling)
+    prepared = prepared_case(dataset_folder, request)
     yield Progress(1, 2)
     if len(prepared) > MAX_PREVIEWED:
         return prepared, no_particles()

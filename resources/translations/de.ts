@@ -436,6 +436,10 @@
         <translation>Eine Abbildung auf Weiß, 1860 × 560 mal der Maßstab</translation>
     </message>
     <message>
+        <source>A filling of an earlier run is used again where dataset, number, cylinder, seed, friction and engine are the same; one that is chosen here also where the friction is another.</source>
+        <translation>Eine Füllung eines früheren Laufs wird wieder verwendet, wenn Datensatz, Zahl, Zylinder, Startwert, Reibung und Programm gleich sind; eine hier gewählte auch bei anderer Reibung.</translation>
+    </message>
+    <message>
         <source>A fitted model: {name}.</source>
         <translation>Ein angepasstes Modell: {name}.</translation>
     </message>
@@ -620,10 +624,6 @@
         <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</translation>
     </message>
     <message>
-        <source>An earlier run of the same particles in the same cylinder, whose filling is lifted again</source>
-        <translation>Ein früherer Lauf derselben Partikel im selben Zylinder, dessen Füllung noch einmal angehoben wird</translation>
-    </message>
-    <message>
         <source>An encrypted cluster needs a folder with {names}.</source>
         <translation>Ein verschlüsselter Cluster braucht einen Ordner mit {names}.</translation>
     </message>
@@ -654,6 +654,10 @@
     <message>
         <source>Angle of repose: study</source>
         <translation>Schüttwinkel: Studie</translation>
+    </message>
+    <message>
+        <source>Angle of the surface [°]</source>
+        <translation>Winkel der Oberfläche [°]</translation>
     </message>
     <message>
         <source>Angles</source>
@@ -1800,6 +1804,10 @@
         <translation>Netzdateien oder Ordner irgendwo im Fenster ablegen, um sie zu öffnen.</translation>
     </message>
     <message>
+        <source>Dynamic angle</source>
+        <translation>Dynamischer Winkel</translation>
+    </message>
+    <message>
         <source>Dynamic friction</source>
         <translation>Gleitreibung</translation>
     </message>
@@ -2456,6 +2464,10 @@
         <translation>Vorne (von -y)</translation>
     </message>
     <message>
+        <source>Froude number {froude:.2g}.</source>
+        <translation>Froude-Zahl {froude:.2g}.</translation>
+    </message>
+    <message>
         <source>Full screen on or off</source>
         <translation>Vollbild ein oder aus</translation>
     </message>
@@ -3052,6 +3064,10 @@
         <translation>Längeneinheit von {name}</translation>
     </message>
     <message>
+        <source>Less the measured {angle:.1f}°: {difference:+.1f}° ({low:+.1f}° to {high:+.1f}°).</source>
+        <translation>Abzüglich der gemessenen {angle:.1f}°: {difference:+.1f}° ({low:+.1f}° bis {high:+.1f}°).</translation>
+    </message>
+    <message>
         <source>Level</source>
         <translation>Niveau</translation>
     </message>
@@ -3150,6 +3166,10 @@
     <message>
         <source>Losses on the Pareto front</source>
         <translation>Auf der Pareto-Front</translation>
+    </message>
+    <message>
+        <source>Lower angle</source>
+        <translation>Unterer Winkel</translation>
     </message>
     <message>
         <source>Lower cut</source>
@@ -3310,6 +3330,10 @@
     <message>
         <source>Measured</source>
         <translation>Gemessen</translation>
+    </message>
+    <message>
+        <source>Measured dynamic angle</source>
+        <translation>Gemessener dynamischer Winkel</translation>
     </message>
     <message>
         <source>Measured moments</source>
@@ -5568,6 +5592,10 @@
         <translation>Drehzahl</translation>
     </message>
     <message>
+        <source>Speed of rotation [rpm]</source>
+        <translation>Drehzahl [U/min]</translation>
+    </message>
+    <message>
         <source>Sphere</source>
         <translation>Kugel</translation>
     </message>
@@ -5800,6 +5828,10 @@
         <translation>Studien</translation>
     </message>
     <message>
+        <source>Studies and calibrations lift a cylinder: choose it as the test.</source>
+        <translation>Studien und Kalibrierungen heben einen Zylinder: Wählen Sie ihn als Versuch.</translation>
+    </message>
+    <message>
         <source>Study</source>
         <translation>Studie</translation>
     </message>
@@ -5946,6 +5978,10 @@
     <message>
         <source>That is all of the file&apos;s {count:,} bytes.</source>
         <translation>Das sind alle {count:,} Bytes der Datei.</translation>
+    </message>
+    <message>
+        <source>The angle is measured when the drum has turned.</source>
+        <translation>Der Winkel wird gemessen, wenn sich die Trommel gedreht hat.</translation>
     </message>
     <message>
         <source>The angle is measured when the particles have come to rest.</source>
@@ -6110,6 +6146,10 @@
     <message>
         <source>The files of the {count} open particles, as chosen now</source>
         <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
+    </message>
+    <message>
+        <source>The filled cylinder of {run} is used again.</source>
+        <translation>Der gefüllte Zylinder von {run} wird wieder verwendet.</translation>
     </message>
     <message>
         <source>The filling takes {share} % of the drum; its Froude number is {froude}.</source>
@@ -6480,6 +6520,10 @@
         <translation>Der Rand schneidet sie an. Die übrigen haben dann größere Gewichte (Miles-Lantuéjoul).</translation>
     </message>
     <message>
+        <source>They end at {angle:.1f}° ({low:.1f}° to {high:.1f}°).</source>
+        <translation>Sie enden bei {angle:.1f}° ({low:.1f}° bis {high:.1f}°).</translation>
+    </message>
+    <message>
         <source>Thickness</source>
         <translation>Dicke</translation>
     </message>
@@ -6514,6 +6558,10 @@
     <message>
         <source>Through the body, of a closed mesh</source>
         <translation>Durch den Körper, bei einem geschlossenen Netz</translation>
+    </message>
+    <message>
+        <source>Time [s]</source>
+        <translation>Zeit [s]</translation>
     </message>
     <message>
         <source>Time at rest</source>
@@ -6678,6 +6726,10 @@
     <message>
         <source>Unusual</source>
         <translation>Auffällig</translation>
+    </message>
+    <message>
+        <source>Upper angle</source>
+        <translation>Oberer Winkel</translation>
     </message>
     <message>
         <source>Upper cut</source>
@@ -7408,6 +7460,10 @@
         <translation>Deskriptor</translation>
     </message>
     <message>
+        <source>descriptors of the grains</source>
+        <translation>Kennwerte der Körner</translation>
+    </message>
+    <message>
         <source>disc</source>
         <translation>scheibig</translation>
     </message>
@@ -7430,6 +7486,10 @@
     <message>
         <source>draw with l_max {whole}.</source>
         <translation>mit l_max {whole} ziehen.</translation>
+    </message>
+    <message>
+        <source>drawing particles</source>
+        <translation>Partikel werden gezogen</translation>
     </message>
     <message>
         <source>drawn</source>
@@ -7458,6 +7518,10 @@
     <message>
         <source>draws from each fit</source>
         <translation>Ziehungen je Fit</translation>
+    </message>
+    <message>
+        <source>drum at {rpm:g} rpm</source>
+        <translation>Trommel mit {rpm:g} U/min</translation>
     </message>
     <message>
         <source>duplicate faces</source>
@@ -7560,6 +7624,10 @@
         <translation>erster Deskriptor</translation>
     </message>
     <message>
+        <source>fits of the grains</source>
+        <translation>Anpassungen der Körner</translation>
+    </message>
+    <message>
         <source>flat facets and edges</source>
         <translation>ebene Facetten und Kanten</translation>
     </message>
@@ -7616,6 +7684,10 @@
         <translation>Korn {label}: {count:,} Voxel, {volume} µm³</translation>
     </message>
     <message>
+        <source>grains of the scan</source>
+        <translation>Körner des Scans</translation>
+    </message>
+    <message>
         <source>greatest distance of two points</source>
         <translation>größter Abstand zweier Punkte</translation>
     </message>
@@ -7662,6 +7734,10 @@
     <message>
         <source>intersecting faces</source>
         <translation>sich schneidende Dreiecke</translation>
+    </message>
+    <message>
+        <source>kept or new</source>
+        <translation>vorhandene oder neue</translation>
     </message>
     <message>
         <source>kernel</source>
@@ -7896,6 +7972,10 @@
         <translation>kein Polyeder</translation>
     </message>
     <message>
+        <source>no surface</source>
+        <translation>keine Oberfläche</translation>
+    </message>
+    <message>
         <source>noise</source>
         <translation>Rauschen</translation>
     </message>
@@ -8074,6 +8154,10 @@
     <message>
         <source>repaired</source>
         <translation>repariert</translation>
+    </message>
+    <message>
+        <source>representatives and polyhedra</source>
+        <translation>Repräsentanten und Polyeder</translation>
     </message>
     <message>
         <source>resampled</source>
@@ -8388,6 +8472,10 @@
         <translation>bis</translation>
     </message>
     <message>
+        <source>too few moments</source>
+        <translation>zu wenige Zeitpunkte</translation>
+    </message>
+    <message>
         <source>too few particles</source>
         <translation>zu wenige Partikel</translation>
     </message>
@@ -8602,6 +8690,10 @@
     <message>
         <source>{count} avalanches are too few for an upper and a lower angle: turn longer, unless the surface flows steadily.</source>
         <translation>{count} Lawinen sind zu wenige für einen oberen und einen unteren Winkel: länger drehen, es sei denn, die Oberfläche fließt stetig.</translation>
+    </message>
+    <message>
+        <source>{count} avalanches begin at {angle:.1f}° ({low:.1f}° to {high:.1f}°).</source>
+        <translation>{count} Lawinen beginnen bei {angle:.1f}° ({low:.1f}° bis {high:.1f}°).</translation>
     </message>
     <message>
         <source>{count} bootstrap samples</source>

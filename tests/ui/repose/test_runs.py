@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.engine import check_run
 from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
 from regolith_studio.dem.snapshot import Snapshot
@@ -81,6 +82,35 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     page.setup.particles.setValue(60)
     wait(lambda: len(page.player.pile) == 60)
     assert "Not run yet" in page.angle.sentence.text()
+
+
+@pytest.mark.slow
+def test_that_a_drum_runs_beside_a_measured_angle_and_its_filling_is_used_again(page, dataset, wait):
+    setup = page.setup
+    setup.set_dataset(dataset)
+    setup.set_evaluation(min_particles=150)
+    setup.particles.setValue(150)
+    setup.apparatus.setCurrentIndex(1)
+    setup.drum.setValue({"rpm": 40.0, "turns": 0.2, "moments": 40})
+    page.run_test()
+    wait(lambda: page.runs.table.rows.rowCount() == 1 and not page.busy())
+    angle = page.runs.current().angle
+    assert page.angle.figures[0].text() == f"{angle:.1f}°"
+    assert page.angle.captions[0].text() == "Dynamic angle"
+    assert "Froude number" in page.angle.sentence.text()
+    assert page.sections.course.curves[1].y == (angle, angle)
+    setup.measured.setValue(30.0)
+    assert f"Less the measured 30.0°: {angle - 30.0:+.1f}°" in page.angle.sentence.text()
+    setup.drum.setValue({"rpm": 20.0, "turns": 0.2, "moments": 40})
+    setup.valueChanged.emit()
+    again = f"The filled cylinder of {page.runs.current().folder.name} is used again."
+    wait(lambda: again in setup.scaling_report.text())
+    setup.contact.setValue(ContactParameters(static_friction=0.4))
+    setup.valueChanged.emit()
+    wait(lambda: page._prepared is not None)
+    assert again not in setup.scaling_report.text()
+    setup.filling.setCurrentIndex(2)
+    wait(lambda: "filled with a friction of 0.8, not 0.4" in setup.scaling_report.text())
 
 
 def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monkeypatch, wait):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dataset.parameters import DRUM, ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import check_number
 from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
@@ -100,6 +100,28 @@ def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, datas
     assert (request.case.seed, request.case.test.gravity) == (7, 5.0)
     page.restore({"setup": {"test": {"gravity": "heavy"}, "unknown": 1}})
     page.restore({"setup": 3})
+
+
+def test_that_a_drum_has_its_own_cylinder_and_an_engine_that_turns_it(page):
+    setup = page.setup
+    setup.test.setValue(LiftingCylinderTest(mass=0.01, wall_friction=0.5))
+    assert setup.request().case.drum is None
+    setup.apparatus.setCurrentIndex(1)
+    setup.drum.setValue({"rpm": 12.0})
+    setup.measured.setValue(38.0)
+    request = setup.request()
+    assert (request.case.drum.rpm, request.engine) == (12.0, "rapier")
+    assert request.case.test == replace(DRUM, mass=0.01, wall_friction=0.5)
+    assert setup.measured_angle() == (38.0, 1.0)
+    with pytest.raises(RegolithError, match="lift a cylinder"):
+        setup.request_of_series()
+    kept = json.loads(json.dumps(page.state()))
+    setup.apparatus.setCurrentIndex(0)
+    setup.measured.setValue(0.0)
+    assert setup.request().case.test == LiftingCylinderTest(mass=0.01, wall_friction=0.5)
+    page.restore(kept)
+    assert setup.request().case == request.case
+    assert setup.measured_angle() == (38.0, 1.0)
 
 
 def test_that_each_engine_has_its_own_numerics(page):

@@ -230,7 +230,7 @@ class CalibrationController:
         if self.run.running:
             return
         try:
-            request = replace(self._setup.request(), filling=None)
+            request = self._setup.request_of_series()
             wanted = self._panel.request(self._setup.dataset, request)
         except RegolithError as error:
             self._context.toast.problem(tr(str(error)))
@@ -456,7 +456,7 @@ class StudyController:
 
     def _request(self) -> ReposeStudyRequest:
         key, values, repeats, workers = self._panel.request()
-        session, request = self._context.session, replace(self._setup.request(), filling=None)
+        session, request = self._context.session, self._setup.request_of_series()
         if key not in SHAPE_KEYS:
             return ReposeStudyRequest(key, values, request, self._setup.dataset, repeats, workers=workers)
         particles = tuple(entry.particle for entry in session.particles)

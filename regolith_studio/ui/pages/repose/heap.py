@@ -10,6 +10,7 @@ from PySide6.QtCore import QPointF, QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QWidget
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
+from regolith_studio.dem.drum_angle import compare_angles
 from regolith_studio.dem.evaluation.profile import Discs, Profile, project
 from regolith_studio.dem.evaluation.section import NotAPileError, Section
 from regolith_studio.dem.run_io import RunSummary
@@ -23,6 +24,7 @@ from regolith_studio.ui.result_card import ResultRecord, ResultState
 from regolith_studio.ui.translation import localized, tr, translate
 from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
@@ -303,6 +305,8 @@ class HeapSections(QWidget):
         self._sections: dict[float, HeapSection] = {}
         self.azimuth = named(QComboBox(), "repose_azimuth", tr("Section"))
         self.plot = SectionPlot()
+        self.course = CurvePlot(tr("Time [s]"), tr("Angle of the surface [°]"), "")
+        self.course.hide()
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
         self._label = hint_label(tr("Section"))
@@ -310,7 +314,7 @@ class HeapSections(QWidget):
         row.addWidget(self._label)
         row.addWidget(self.azimuth)
         row.addStretch(1)
-        vbox(row, (self.plot, 1), parent=self)
+        vbox(row, (self.plot, 1), (self.course, 1), parent=self)
         self.azimuth.currentIndexChanged.connect(lambda *_: self._show_chosen())
         self.show_nothing(tr("Run a test or open positions to see its section."))
 
@@ -326,12 +330,32 @@ class HeapSections(QWidget):
         self._offer(True)
         self._show_chosen()
 
+    def show_drum(self, measurement: Mapping[str, Any]) -> None:
+        """Show how the surface of a drum rises and falls, or why it has no angle."""
+        if measurement["angle_deg"] is None:
+            self.show_nothing(translate(measurement["reason"]))
+            return
+        times = tuple(measurement["times_s"])
+        curves = [PlotCurve(tr("Surface"), self.course.theme.muted, times, tuple(measurement["angles_deg"]))]
+        levels = {tr("Dynamic angle"): measurement["angle_deg"]}
+        for name, label in (("upper", tr("Upper angle")), ("lower", tr("Lower angle"))):
+            if measurement[name]:
+                levels[label] = measurement[name]["mean_deg"]
+        ends = (times[0], times[-1])
+        for (label, level), colour in zip(levels.items(), (BOTH, RIGHT, LEFT), strict=False):
+            curves.append(PlotCurve(label, colour, ends, (level, level)))
+        self.course.set_curves(curves)
+        self.plot.hide()
+        self.course.show()
+
     def show_nothing(self, sentence: str) -> None:
         self._sections = {}
         self._offer(False)
         self.plot.show_nothing(sentence)
 
     def _offer(self, visible: bool) -> None:
+        self.course.hide()
+        self.plot.show()
         self.azimuth.setVisible(visible)
         self._label.setVisible(visible)
 
@@ -391,6 +415,43 @@ def heap_record(
     return ResultRecord(values, made_from, made_with, ResultState.CURRENT, "\n".join((note, *notes)))
 
 
+def drum_record(
+    run: RunSummary, made_from: str, made_with: str, notes: Sequence[str], own: tuple[float, float] | None
+) -> ResultRecord:
+    """The dynamic angle with its interval, upper and lower angle, and the difference from one's own."""
+    measured = run.document["measurement"]
+    if measured["angle_deg"] is None:
+        reason = translate(run.message(measured["reason"]))
+        note = "\n".join((tr("No angle of repose: {reason}", reason=reason), *notes))
+        return ResultRecord(("–", "–"), made_from, made_with, ResultState.CURRENT, note)
+    low, high = measured["interval_deg"]
+    sentences = []
+    if own is not None:
+        compared = compare_angles(measured["angle_deg"], (low, high), *own)
+        sentences.append(
+            tr(
+                "Less the measured {angle:.1f}°: {difference:+.1f}° ({low:+.1f}° to {high:+.1f}°).",
+                angle=own[0],
+                difference=compared["difference_deg"],
+                low=compared["interval_deg"][0],
+                high=compared["interval_deg"][1],
+            )
+        )
+    if measured["upper"]:
+        for name, template in (
+            ("upper", N_("{count} avalanches begin at {angle:.1f}° ({low:.1f}° to {high:.1f}°).")),
+            ("lower", N_("They end at {angle:.1f}° ({low:.1f}° to {high:.1f}°).")),
+        ):
+            ends = measured[name]["interval_deg"]
+            angle, count = measured[name]["mean_deg"], measured["n_avalanches"]
+            sentences.append(tr(template, count=count, angle=angle, low=ends[0], high=ends[1]))
+    sentences.append(tr("Froude number {froude:.2g}.", froude=measured["froude"]))
+    sentences += [translate(run.message(each)) for each in measured["warnings"]]
+    values = (localized(f"{measured['angle_deg']:.1f}°"), tr("{low:.1f}° to {high:.1f}°", low=low, high=high))
+    note = "\n".join((" ".join(sentences), *notes))
+    return ResultRecord(values, made_from, made_with, ResultState.CURRENT, note)
+
+
 def interval_caption(measured: ReposeMeasurement | NotAPileError | None) -> str:
     if isinstance(measured, NotAPileError) and measured.status in ("concave", "convex"):
         return tr("Flanks: top | toe")
@@ -424,6 +485,8 @@ def run_origin(document: Mapping[str, Any]) -> tuple[str, str]:
         friction=case["contact"]["static_friction"],
         seed=case["seed"],
     )
+    if drum := case.get("drum"):
+        made_with = ", ".join((tr("drum at {rpm:g} rpm", rpm=drum["rpm"]), made_with))
     return made_from, made_with
 
 

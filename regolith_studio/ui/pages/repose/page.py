@@ -44,6 +44,7 @@ from regolith_studio.ui.pages.repose.calibration import (
 )
 from regolith_studio.ui.pages.repose.heap import (
     HeapSections,
+    drum_record,
     heap_record,
     interval_caption,
     run_notes,
@@ -73,6 +74,7 @@ class ReposePage(PageWidget):
         self._context = context
         self._folder = Path(context.recall("folder", str(user_data_path("regolith-studio") / "repose")))
         self._pile: ParticleState | None = None
+        self._drum: RunSummary | None = None
         self._measured: ReposeMeasurement | None = None
         self._shown_run: Path | None = None
         self._origin = ("", "")
@@ -223,7 +225,11 @@ class ReposePage(PageWidget):
             return
         self._later.stop()
         self._live_scene = self._live_pile = None
-        note = tr("The angle is measured when the particles have come to rest.")
+        note = (
+            tr("The angle is measured when the drum has turned.")
+            if request.case.drum
+            else tr("The angle is measured when the particles have come to rest.")
+        )
         self._show_nothing(note)
         self.tabs.setCurrentIndex(0)
         folder = self._new_folder(f"{dataset.name}-{request.case.n_particles}")
@@ -332,7 +338,7 @@ class ReposePage(PageWidget):
         def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
             self._show_preview(request, *drawn)
 
-        job = Job(preview_repose, (dataset, request.case, request.filling))
+        job = Job(preview_repose, (dataset, request))
         self._context.start(
             tr("Drawing particles"),
             job,
@@ -442,7 +448,11 @@ class ReposePage(PageWidget):
             self._context.toast.problem(str(error))
             return
         self._origin, self._notes = run_origin(run.document), run_notes(run)
-        if pile is not None:
+        if pile is not None and case.get("drum"):
+            self._drum = run
+            self.player.frame_heap(pile)
+            self._show_drum()
+        elif pile is not None:
             self._measure(pile)
         else:
             state = run.document["state"]
@@ -451,7 +461,20 @@ class ReposePage(PageWidget):
         self._shown_run = run.folder
         self._show_limits(scale_of_run(run.document))
 
+    def _show_drum(self) -> None:
+        """Show the angles of a drum beside the user's own."""
+        if self._drum is None:
+            return
+        run = self._drum
+        self._show_nothing("")
+        self._drum, self._shown_run = run, run.folder
+        self.angle.caption(0, tr("Dynamic angle"))
+        self._show_card(drum_record(run, *self._origin, self._notes, self.setup.measured_angle()))
+        self.sections.show_drum(run.document["measurement"])
+
     def _measure(self, pile: ParticleState) -> None:
+        self._drum = None
+        self.angle.caption(0, tr("Angle of repose"))
         self._pile = pile
         self.player.frame_heap(pile)
         self._show_card(ResultRecord((), *self._origin, note=tr("The heap is being measured.")))
@@ -478,7 +501,8 @@ class ReposePage(PageWidget):
     def _show_nothing(self, sentence: str, state: ResultState = ResultState.NONE) -> None:
         """Show that there is no measurement of what is seen, and why."""
         self._context.stop(MEASURE)
-        self._pile = self._measured = self._shown_run = None
+        self._pile = self._measured = self._shown_run = self._drum = None
+        self.angle.caption(0, tr("Angle of repose"))
         self.angle.caption(1, interval_caption(None))
         self._show_card(ResultRecord(state=state, note=sentence))
         self.sections.show_nothing(sentence)
@@ -512,6 +536,7 @@ class ReposePage(PageWidget):
     def _connect(self) -> None:
         self.setup.valueChanged.connect(self._ask_preview)
         self.setup.evaluationChanged.connect(self._measure_again)
+        self.setup.measuredChanged.connect(self._show_drum)
         self.setup.datasetWanted.connect(self.open_dataset)
         self.setup.sampleWanted.connect(self.make_dataset)
         self.limits.runRequested.connect(self.run_with)

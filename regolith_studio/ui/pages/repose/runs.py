@@ -23,6 +23,7 @@ AGAINST: Mapping[str, tuple[str, ...]] = {
     N_("Gravity [m/s²]"): ("case", "test", "gravity"),
     N_("Wall friction"): ("case", "test", "wall_friction"),
     N_("Lift speed [m/s]"): ("case", "test", "lift_speed"),
+    N_("Speed of rotation [rpm]"): ("case", "drum", "rpm"),
     N_("Number of particles"): ("case", "n_particles"),
     N_("Seed"): ("case", "seed"),
 }
@@ -32,6 +33,7 @@ STATES = (
     *(N_("finished"), N_("stopped"), N_("failed")),
     *(N_("too few particles"), N_("layer"), N_("column stands"), N_("no flanks")),
     *(N_("concave"), N_("convex"), N_("scattered")),
+    *(N_("too few moments"), N_("no surface")),
 )
 """States of a run, and why a heap has no angle."""
 HEADINGS = (
@@ -90,18 +92,19 @@ class RunsPanel(QWidget):
                 float(value),
                 run.angle,
                 *run.document["measurement"]["interval_deg"],
-                run.document["case"]["shapes"],
+                _kind(run.document["case"]),
             )
             for run in self._runs
             if run.angle is not None and (value := _at(run.document, path)) is not None
         )
-        colours = {"polyhedra": self.plot.theme.polyhedron, "spheres": self.plot.theme.fit}
+        theme = self.plot.theme
+        colours = {"polyhedra": theme.polyhedron, "spheres": theme.fit, "Rotating drum": theme.accent}
         self.plot.set_labels(self.against.currentText(), tr("Angle [°]"))
         curves = []
-        for shapes, colour in colours.items():
-            chosen = [each for each in points if each[-1] == shapes]
+        for kind, colour in colours.items():
+            chosen = [each for each in points if each[-1] == kind]
             x, angles = tuple(each[0] for each in chosen), tuple(each[1] for each in chosen)
-            curves.append(PlotCurve(tr(shapes) if chosen else "", colour, x, angles, markers=True))
+            curves.append(PlotCurve(tr(kind) if chosen else "", colour, x, angles, markers=True))
             curves.append(interval_bars(colour, [(each[0], each[2], each[3]) for each in chosen]))
         self.plot.set_curves([each for each in curves if each.x])
 
@@ -110,6 +113,11 @@ def interval_bars(colour: str, intervals: Sequence[tuple[float, float, float]]) 
     """Vertical bars: place, lower and upper end of each."""
     x = tuple(place for place, _, _ in intervals for _ in range(3))
     return PlotCurve("", colour, x, tuple(y for _, low, high in intervals for y in (low, high, math.nan)))
+
+
+def _kind(case: Mapping[str, Any]) -> str:
+    """Angles of one kind are compared with each other: of heaps by their shapes, or dynamic ones of drums."""
+    return "Rotating drum" if case.get("drum") else str(case["shapes"])
 
 
 def _cells(run: RunSummary) -> tuple[str, ...]:
@@ -128,7 +136,7 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
         tr("{low:.1f} to {high:.1f}", low=interval[0], high=interval[1]) if interval else "",
         number_text(case["n_particles"], ","),
         number_text(case["contact"]["static_friction"], "g"),
-        tr(str(case["shapes"])),
+        tr(_kind(case)),
         number_text(case["test"]["gravity"], "g"),
         str(case["seed"]),
         str(document["engine"]["label"]),

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +21,11 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.dataset.parameters import (
+    DRUM,
     GRAVITIES,
     PAPER_COARSE_GRAINING,
     ContactParameters,
+    DrumRotation,
     LiftingCylinderTest,
 )
 from regolith_studio.dem.angle_of_repose import RELIABLE_N
@@ -38,7 +40,7 @@ from regolith_studio.ui.layout import Collapsible, hbox, named
 from regolith_studio.ui.pages.repose.runs import duration_text
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
-from regolith_studio.ui.widgets.fields import ElidedComboBox
+from regolith_studio.ui.widgets.fields import ElidedComboBox, decimal_field
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
 from regolith_studio.ui.widgets.presets import PresetForm
@@ -176,6 +178,14 @@ class LimitsStrip(QWidget):
 MAX_PARTICLES = 400_000
 PRESETS = {N_("Teaching"): 300, N_("Standard"): 1000, N_("Fine"): 5000}
 SHAPES = {N_("The dataset's polyhedra"): "polyhedra", N_("Spheres of the same volumes"): "spheres"}
+APPARATUS = {N_("Lifting cylinder"): "cylinder", N_("Rotating drum"): "drum"}
+OF_DRUM = {
+    name: (value, getattr(LiftingCylinderTest(), name))
+    for name, value in vars(DRUM).items()
+    if value != getattr(LiftingCylinderTest(), name)
+}
+"""Values of the usual drum and of the lifting cylinder, where they differ."""
+KEPT = "kept"
 COHESION = {
     N_("None"): "none",
     N_("As given (experimental)"): "given",
@@ -188,6 +198,7 @@ class SetupPanel(QWidget):
 
     valueChanged = Signal()  # noqa: N815
     evaluationChanged = Signal()  # noqa: N815
+    measuredChanged = Signal()  # noqa: N815
     datasetWanted = Signal()  # noqa: N815
     sampleWanted = Signal()  # noqa: N815
 
@@ -218,9 +229,20 @@ class SetupPanel(QWidget):
             "repose_gravity_of",
             tr("Gravity of"),
         )
-        self.filling = _choice({N_("new"): ""}, "repose_filling", tr("Filling"))
+        self._runs: tuple[Path, ...] = ()
+        self.filling = _choice({N_("kept or new"): KEPT, N_("new"): ""}, "repose_filling", tr("Filling"))
         self.filling.setToolTip(
-            tr("An earlier run of the same particles in the same cylinder, whose filling is lifted again")
+            tr(
+                "A filling of an earlier run is used again where dataset, number, cylinder, seed, friction "
+                "and engine are the same; one that is chosen here also where the friction is another."
+            )
+        )
+        self.apparatus = _choice(APPARATUS, "repose_apparatus", tr("Test"))
+        self.drum = SettingsForm(DrumRotation, prefix="drum_")
+        self.measured = decimal_field("repose_measured", tr("Measured dynamic angle"), 0.0, 90.0, 0.0, "°", 1)
+        self.measured.setSpecialValueText(tr("None"))
+        self.measured_error = decimal_field(
+            "repose_measured_error", tr("Standard error"), 0.0, 45.0, 1.0, "°", 1
         )
         self.test = PresetForm(LiftingCylinderTest, "test", tr("Published cylinder"))
         self.contact = PresetForm(ContactParameters, "contact", tr("Published contact parameters"))
@@ -249,9 +271,10 @@ class SetupPanel(QWidget):
     def set_fillings(self, folders: Sequence[Path]) -> None:
         """Offer the fillings of other runs; the chosen one stays if it is among them."""
         chosen = self.filling.currentData()
+        self._runs = tuple(folders)
         with QSignalBlocker(self.filling):
-            while self.filling.count() > 1:
-                self.filling.removeItem(1)
+            while self.filling.count() > 2:
+                self.filling.removeItem(2)
             for folder in folders:
                 self.filling.addItem(tr("of {run}", run=folder.name), str(folder))
             self.filling.setCurrentIndex(max(0, self.filling.findData(chosen)))
@@ -265,11 +288,33 @@ class SetupPanel(QWidget):
             shapes=self.shapes.currentData(),
             cohesion=self.cohesion.currentData(),
             seed=self.seed.value(),
+            drum=DrumRotation(**self.drum.value()) if self.in_drum else None,
         )
-        settings = engine.Settings(**self.numerics.value())
-        filling = Path(name) if (name := self.filling.currentData()) else None
-        evaluation = self.evaluation_settings()
-        return ReposeRequest(case, engine.key, settings, evaluation, threads=cores(), filling=filling)
+        chosen = self.filling.currentData()
+        return ReposeRequest(
+            case,
+            engine.key,
+            engine.Settings(**self.numerics.value()),
+            self.evaluation_settings(),
+            threads=cores(),
+            filling=Path(chosen) if chosen not in (KEPT, "") else None,
+            kept=self._runs if chosen == KEPT else (),
+        )
+
+    def request_of_series(self) -> ReposeRequest:
+        """Of studies and calibrations: each of their runs lifts a filling of its own."""
+        if self.in_drum:
+            raise InputError(N_("Studies and calibrations lift a cylinder: choose it as the test."))
+        return replace(self.request(), filling=None, kept=())
+
+    @property
+    def in_drum(self) -> bool:
+        """Whether the cylinder turns on its side."""
+        return bool(self.apparatus.currentData() == "drum")
+
+    def measured_angle(self) -> tuple[float, float] | None:
+        """The user's own dynamic angle and its standard error in degrees, if one was entered."""
+        return (self.measured.value(), self.measured_error.value()) if self.measured.value() else None
 
     def evaluation_settings(self) -> EvaluationSettings:
         return EvaluationSettings(**self.evaluation.value())
@@ -298,6 +343,9 @@ class SetupPanel(QWidget):
             "shapes": self.shapes.currentData(),
             "cohesion": self.cohesion.currentData(),
             "engine": self.engine.currentData(),
+            "apparatus": self.apparatus.currentData(),
+            "drum": self.drum.value(),
+            "measured": [self.measured.value(), self.measured_error.value()],
             "test": self.test.changes(),
             "contact": self.contact.changes(),
             "evaluation": self.evaluation.value(),
@@ -307,8 +355,14 @@ class SetupPanel(QWidget):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Show what :meth:`state` returned; invalid values are ignored."""
+        self._select(self.apparatus, state, "apparatus")  # first: it changes values of the test
         try:
             self.test.restore(state.get("test", {}))
+            self.drum.setValue(state.get("drum", {}))
+            for field, value in zip(
+                (self.measured, self.measured_error), state.get("measured", ()), strict=False
+            ):
+                field.setValue(float(value))
             self.contact.restore(state.get("contact", {}))
             self.evaluation.setValue(state.get("evaluation", {}))
             self._limit_particles()
@@ -319,10 +373,14 @@ class SetupPanel(QWidget):
         except (InputError, TypeError, ValueError, AttributeError):
             return
         for box, name in ((self.shapes, "shapes"), (self.cohesion, "cohesion"), (self.engine, "engine")):
-            box.setCurrentIndex(max(0, box.findData(state.get(name, box.currentData()))))
+            self._select(box, state, name)
         folder = state.get("dataset")
         if folder and Path(str(folder)).is_dir():
             self.set_dataset(Path(str(folder)))
+
+    @staticmethod
+    def _select(box: QComboBox, state: Mapping[str, Any], name: str) -> None:
+        box.setCurrentIndex(max(0, box.findData(state.get(name, box.currentData()))))
 
     def _place(self) -> None:
         presets = [
@@ -333,6 +391,7 @@ class SetupPanel(QWidget):
             button.clicked.connect(lambda _=False, count=count: self.particles.setValue(count))
         form = QFormLayout()
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
+        form.addRow(tr("Test"), self.apparatus)
         form.addRow(tr("Number"), self.particles)
         form.addRow(tr("Seed"), self.seed)
         form.addRow(tr("Shapes"), self.shapes)
@@ -350,7 +409,11 @@ class SetupPanel(QWidget):
             self.problem,
             self.scaling_report,
         )
+        self.drum.rows.addRow(tr("Measured dynamic angle"), self.measured)
+        self.drum.rows.addRow(tr("Standard error"), self.measured_error)
+        self._drum_box = Collapsible(tr("Rotating drum"), self.drum)
         values = _column(
+            self._drum_box,
             Collapsible(tr("Test"), self.test),
             Collapsible(tr("Contact"), self.contact),
             Collapsible(tr("Evaluation of the heap"), self.evaluation),
@@ -374,6 +437,7 @@ class SetupPanel(QWidget):
             self.engine.currentIndexChanged,
             self.filling.currentIndexChanged,
             self.test.valueChanged,
+            self.drum.valueChanged,
             self.contact.valueChanged,
             *(each.valueChanged for each in self._numerics.values()),
         ):
@@ -383,6 +447,11 @@ class SetupPanel(QWidget):
         self._limit_particles()
         self.engine.currentIndexChanged.connect(lambda *_: self._show_numerics())
         self._show_numerics()
+        self.apparatus.currentIndexChanged.connect(lambda *_: self._take_apparatus())
+        self._drum_box.set_open(True)
+        self._drum_box.setVisible(self.in_drum)
+        for field in (self.measured, self.measured_error):
+            field.valueChanged.connect(lambda *_: self.measuredChanged.emit())
         self.gravity.currentIndexChanged.connect(self._take_gravity)
         self.test.valueChanged.connect(self._show_gravity)
 
@@ -394,6 +463,17 @@ class SetupPanel(QWidget):
     def _show_numerics(self) -> None:
         for key, form in self._numerics.items():
             form.setVisible(key == self.engine.currentData())
+
+    def _take_apparatus(self) -> None:
+        """Take the usual values of the apparatus for those of the other, and an engine that has it."""
+        self._drum_box.setVisible(self.in_drum)
+        values = vars(self.test.value())
+        pairs = {name: pair if self.in_drum else pair[::-1] for name, pair in OF_DRUM.items()}
+        self.test.restore(values | {name: new for name, (new, old) in pairs.items() if values[name] == old})
+        if self.in_drum and not engine_named(self.engine.currentData()).capabilities.drum:
+            able = next(key for key, engine in ENGINES.items() if engine.capabilities.drum)
+            self.engine.setCurrentIndex(self.engine.findData(able))
+        self.valueChanged.emit()
 
     def _take_gravity(self) -> None:
         if text := self.gravity.currentData():
