@@ -210,7 +210,8 @@ def with_filling(prepared: PreparedCase, folder: Path) -> PreparedCase:
         ("rolling resistance", filled["rolling_friction"], contact.rolling_friction),
         ("Bond number", earlier["particles"]["bond_number"][2], scaling_report(prepared).bond_number[2]),
     )
-    notes = [
+    notes = [f"{folder.name}: {note}" for note in earlier["filling"]["notes"]]
+    notes += [
         f"The cylinder was filled with a {what} of {was:.3g}, not {now:.3g}."
         for what, was, now in remembered
         if not np.isclose(was, now)

@@ -44,6 +44,7 @@ from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
     check_prepared,
     measure_result,
+    prepared_case,
     repose_steps,
 )
 from regolith_studio.jobs.repose_study import (
@@ -151,6 +152,9 @@ def test_that_a_filled_cylinder_is_lifted_again_under_another_gravity(
     assert second["filling"]["notes"] == ["The cylinder was filled with a friction of 0.8, not 0.7."]
     assert second["filling"]["sha256"] == hashlib.sha256(particle_state_bytes(filled[-1])).hexdigest()
     assert second["run"]["steps"] < first["run"]["steps"]
+    third = replace(with_value(ORDER, "static_friction", 0.7), filling=tmp_path / "moon")
+    remembered = "moon: The cylinder was filled with a friction of 0.8, not 0.7."
+    assert prepared_case(boxes_folder, third).filling_notes == (remembered,)
 
 
 def test_that_a_filling_of_other_particles_is_refused_before_the_run(
