@@ -91,7 +91,7 @@ def test_that_a_command_that_does_not_end_after_a_signal_is_counted(
         (("old", "grain"), Ended(1, "The disk is full.", 0), (1, 0, 0, 0, 0)),
         (("old", "grain"), Ended(1, "Traceback\nOSError", 0), (0, 1, 0, 0, 0)),
         (("old", "grain"), Ended(1, "A remark.\nThe disk is full.", 0), (1, 0, 0, 0, 0)),
-        (("old", "grain"), Ended(1, "1 of 3: 29 s each\nThe disk is full.", 0), (1, 0, 0, 0, 0)),
+        (("old", "grain"), Ended(1, "Particles: 1 of 3, 29 s each\nThe disk is full.", 0), (1, 0, 0, 0, 0)),
         (("old", "grain"), Ended(0, "", 0), (0, 0, 1, 0, 0)),
         (("new", "grain"), Ended(0, "", 0), (0, 0, 0, 0, 0)),
         (("half", "grain"), Ended(0, "", 0), (0, 0, 0, 1, 0)),

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QApplication, QCheckBox, QMenu, QSpinBox
 
-from regolith_studio.ui.widgets.plots.base import CountAxis, FittedAxis, PlotCanvas
+from regolith_studio.ui.widgets.plots.base import CANVAS_MARGIN, LAST_LABEL, CountAxis, FittedAxis, PlotCanvas
 from regolith_studio.ui.widgets.plots.curves import CurvePlot
 
 STEPS = np.arange(1.0, 9.0)
@@ -20,6 +20,8 @@ def theirs():
     widget = pg.PlotWidget(background=None, enableMenu=False, axisItems=axes())
     widget.setMouseEnabled(x=False, y=False)
     widget.hideButtons()
+    # The only difference: room for the label of the last tick.
+    widget.getPlotItem().layout.setContentsMargins(CANVAS_MARGIN, CANVAS_MARGIN, LAST_LABEL, CANVAS_MARGIN)
     return widget
 
 
