@@ -18,6 +18,7 @@ from .test_documented_code import ROOT, SHORT, commands, table
 ELSEWHERE = {
     "serve": "does not end; tests/web starts it",
     "repose": "heaps of minutes; tests/dem and tests/scene have smaller ones",
+    "uncertainty": "20 grains and their heaps; tests/jobs/test_uncertainty.py has smaller ones",
     "classify": "needs a painted scan; tests/cli/test_classify.py has one",
 }
 """First words of commands that run in other tests."""
