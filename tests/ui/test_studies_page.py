@@ -305,3 +305,13 @@ def test_that_a_budget_of_uncertainty_is_made_in_a_folder_and_marked_when_choice
     assert (panel.table.rows.item(1, 0).text(), share) == ("Number of facets", 0.0)
     window.session.choose(n_facets=20)
     wait(lambda: panel.card.record.state is ResultState.STALE)
+
+
+def test_that_a_project_names_no_folder_in_which_a_budget_is_written(window, tmp_path):
+    page, place = window.go("studies"), tmp_path / "elsewhere"
+    state = {"budget": {"points": 4, "heaps": "many", "folder": str(place)}, "made": ["budget"]}
+    page.restore(state)
+    page.resume(state)
+    assert not window.session.tasks
+    assert page.budget.value() == {"points": 4, "heaps": 0}
+    assert not place.exists()

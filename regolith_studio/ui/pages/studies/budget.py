@@ -75,13 +75,16 @@ class BudgetPanel(QWidget):
         study_panel(self, self.card, asked, hint_label(tr(HINT)), self.table)
 
     def value(self) -> dict[str, Any]:
-        """Plain JSON."""
-        return {"points": self.points.currentData(), "heaps": self.heaps.value(), "folder": self._folder}
+        """Plain JSON.
+
+        Not the folder: a project that is opened must not name where files are written.
+        """
+        return {"points": self.points.currentData(), "heaps": self.heaps.value()}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         self.points.setCurrentIndex(max(0, self.points.findData(value.get("points"))))
-        self.heaps.setValue(int(value.get("heaps", 0)))
-        self._folder = str(value.get("folder", ""))
+        if isinstance(heaps := value.get("heaps"), int):
+            self.heaps.setValue(min(max(heaps, 0), MAX_HEAPS))
 
     def start(self) -> None:
         """Ask for a folder and make the budget there."""
@@ -185,7 +188,8 @@ def _angle_rows(angle: AngleBudget | None) -> list[Row]:
     whole, variances = angle.variance, angle.step_variances()
     rows: list[Row] = []
     for each in angle.effects:
-        change = f"{each.change:.1f} ({each.low:.1f} – {each.high:.1f})"
+        numbers = (number_text(value, ".1f") for value in (each.change, each.low, each.high))
+        change = "{} ({} – {})".format(*numbers)
         share = tr("{count} heaps would decide", count=each.heaps_needed or "–")
         if each.decided:
             share = number_text(100 * variances.get(each.step.key, 0.0) / whole, ".0f")

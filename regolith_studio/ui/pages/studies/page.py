@@ -175,7 +175,6 @@ class StudiesPage(PageWidget):
         results = self._session.results
         made: list[str] = [k for k in KINDS if getattr(results, k.value) and k.value not in results.outdated]
         made += self.sweeps.current()
-        made += ["budget"] * bool(self.budget.card.record.values)
         return self.settings() | {"made": made + ["gallery"] * bool(self.gallery.value())}
 
     def resume(self, state: Mapping[str, Any]) -> None:
@@ -188,8 +187,6 @@ class StudiesPage(PageWidget):
             self.sweeps.start(key, quietly=True)
         if "gallery" in made:
             self.draw_gallery()
-        if "budget" in made and (folder := self.budget.value()["folder"]):
-            self.budget.start_in(folder)
 
     def restore(self, state: Mapping[str, Any]) -> None:
         rows, values = state.get("rows"), state.get("values")
