@@ -47,6 +47,7 @@ from regolith_studio.jobs.uncertainty_chain import (
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy
 from regolith_studio.studies.uncertainty import (
+    EVALUATION,
     FILLING,
     OUTPUTS,
     RESAMPLED,
@@ -455,7 +456,7 @@ def _angle_budget(
         if run.varied == FILLING and run.angle is not None:
             evaluated[run.seed - first] = _angle_of(study_place(folder, run.folder), other)
     toes = tuple(f"lower cut at {each.toe:g} d or more" for each in (settings, other))
-    step = ChainStep("evaluation", N_("Evaluation"), toes)
+    step = ChainStep(EVALUATION, N_("Evaluation"), toes)
     nominal = angles.pop((FILLING, plan[0].level))
     angles |= {(each.step.key, each.level): nominal for each in same}
     steps = dict.fromkeys(each.step for each in plan[1:])

@@ -6,14 +6,13 @@ al., *Comput. Phys. Commun.* 181 (2010) 259; total shares by Jansen). For the an
 changed in heaps of the same seeds.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.stats import f as f_distribution
-from scipy.stats import t as student_t
+from scipy.special import fdtri, stdtrit
 from scipy.stats.qmc import Sobol
 
 from regolith_studio.errors import InputError
@@ -33,6 +32,8 @@ RESAMPLES = 64
 RESAMPLED = "representatives"
 """Key of the step whose levels are bootstrap samples."""
 FILLING = "filling"
+EVALUATION = "evaluation"
+"""Key of the step whose heaps are those of the present settings."""
 CONFIDENCE = 0.95
 N_BOOTSTRAP = 500
 MAX_HEAPS = 10_000
@@ -135,7 +136,7 @@ class DescriptorBudget:
         """
         logs = self._logarithms
         freedom = max(min(self.n_grains, len(logs)) - 1, 1)
-        factor = student_t.ppf((1 + CONFIDENCE) / 2, freedom) * np.sqrt(1 + 1 / max(len(logs), 1))
+        factor = _student(freedom) * np.sqrt(1 + 1 / max(len(logs), 1))
         half = factor * self.relative_deviation
         centre = logs.mean(axis=0) if len(logs) else np.full(len(OUTPUTS), np.nan)
         return np.asarray(np.exp(np.column_stack([centre - half, centre + half])))
@@ -164,8 +165,8 @@ class DescriptorBudget:
 class AngleEffect:
     """What a level of a step does to the angle, in degrees.
 
-    - ``change``, ``low``, ``high``: mean difference of heaps of the same seeds, and its interval; of the
-      bootstrap the standard deviation that it adds.
+    - ``change``, ``low``, ``high``: difference of heaps of the same seeds, and its interval; of the bootstrap
+      the standard deviation that it adds.
     - ``n``: pairs of heaps.
     - ``decided``: whether the interval excludes 0.
     - ``heaps_needed``: pairs that would decide it if it is as large as it seems; none if it is decided.
@@ -213,18 +214,46 @@ class AngleBudget:
         piles = self.nominal[np.isfinite(self.nominal)]
         return float(piles.var(ddof=1) / len(piles)) if len(piles) > 1 else np.nan
 
-    @property
+    @cached_property
     def effects(self) -> tuple[AngleEffect, ...]:
         """Of the levels with two pairs of heaps or more."""
-        effects = []
+        rows = {}
         for step in self.steps:
             for level in step.levels[1:]:
                 pairs = np.column_stack([self.nominal, self.changed[step.key, level]])
                 pairs = pairs[np.isfinite(pairs).all(axis=1)]
                 if len(pairs) > 1:
-                    effect = _added_spread if step.key == RESAMPLED else _difference
-                    effects.append(effect(step, level, pairs))
+                    rows[step, level] = pairs
+        pooled = self._pooled_effects([row for row, pairs in rows.items() if _has_own_noise(row[0], pairs)])
+        effects = []
+        for (step, level), pairs in rows.items():
+            effect = _added_spread if step.key == RESAMPLED else _difference
+            effects.append(pooled.get((step, level)) or effect(step, level, pairs))
         return tuple(effects)
+
+    def _pooled_effects(self, rows: list[tuple[ChainStep, str]]) -> dict[tuple[ChainStep, str], AngleEffect]:
+        """Of those of these levels whose heaps scatter like all, with the scatter of all.
+
+        A heap has the effect of its level, that of its seed and noise (a randomised block design). The
+        changes are those of least squares, so that they need not have the same seeds; with one level they
+        are Student's paired differences.
+        """
+        angles = np.array([self.nominal, *(self.changed[step.key, level] for step, level in rows)])
+        scattered = _scattered_rows(angles)
+        kept = [k for k in range(1, len(angles)) if k not in scattered]
+        if 0 in scattered or not kept:
+            return {}
+        fit = _BlockFit.of(angles[[0, *kept]])
+        effects = {}
+        for k, change, factor in zip(kept, fit.changes.tolist(), fit.factors.tolist(), strict=True):
+            n = int((np.isfinite(self.nominal) & np.isfinite(angles[k])).sum())
+
+            def half(count: int, factor: float = factor, n: int = n) -> float:
+                quantile = _student(fit.freedom + len(kept) * (count - n))
+                return float(quantile * np.sqrt(fit.variance * factor * n / count))
+
+            effects[rows[k - 1]] = _effect(*rows[k - 1], change, n, half)
+        return effects
 
     def step_variances(self, with_undecided: bool = False) -> dict[str, float]:
         """By key: of equally probable levels, or of the bootstrap; undecided changes are 0, or far ends."""
@@ -254,19 +283,82 @@ class AngleBudget:
 
     def _half_width(self, variance: float) -> float:
         n = int(np.isfinite(self.nominal).sum())
-        return float(student_t.ppf((1 + CONFIDENCE) / 2, n - 1) * variance**0.5) if n > 1 else np.nan
+        return float(_student(n - 1) * variance**0.5) if n > 1 else np.nan
+
+
+@dataclass(frozen=True, eq=False)
+class _BlockFit:
+    """Least squares of angles by level (rows, the present one first) and seed; NaN where there is no heap.
+
+    - ``changes``: of the other levels from the first; ``factors``: their variances over that of a heap.
+    - ``squares``, ``freedom``: sum of the squared residuals, and its degrees of freedom.
+    """
+
+    changes: FloatArray
+    factors: FloatArray
+    squares: float
+    freedom: int
+
+    @property
+    def variance(self) -> float:
+        """Of a heap about the effects of its level and seed."""
+        return self.squares / self.freedom
+
+    @classmethod
+    def of(cls, angles: FloatArray) -> "_BlockFit":
+        level, seed = np.nonzero(np.isfinite(angles))
+        known, n = angles[level, seed], len(angles) - 1
+        columns = level[:, None] == np.arange(1, n + 1), seed[:, None] == np.arange(angles.shape[1])
+        design = np.hstack(columns).astype(float)
+        inverse = np.linalg.pinv(design.T @ design)
+        effects = inverse @ (design.T @ known)
+        freedom = len(known) - int(np.linalg.matrix_rank(design))
+        squares = float(((known - design @ effects) ** 2).sum())
+        return cls(effects[:n], np.diag(inverse)[:n], squares, freedom)
+
+
+def _scattered_rows(angles: FloatArray) -> set[int]:
+    """Rows that scatter more than all others together, by F-tests at 5 % for all rows together.
+
+    One that scatters less is no reason to take it out: its interval would be too narrow by chance.
+    """
+    whole, scattered = _BlockFit.of(angles), set()
+    for k in range(len(angles)):
+        rest = _BlockFit.of(np.delete(angles, k, axis=0))
+        freedom = whole.freedom - rest.freedom
+        if rest.freedom > 0 and freedom > 0:
+            bound = fdtri(freedom, rest.freedom, 1 - (1 - CONFIDENCE) / len(angles))
+            if (whole.squares - rest.squares) / freedom > bound * rest.variance:
+                scattered.add(k)
+    return scattered
+
+
+def _student(freedom: int) -> float:
+    """Half width of an interval in standard deviations."""
+    return float(stdtrit(freedom, (1 + CONFIDENCE) / 2))
+
+
+def _has_own_noise(step: ChainStep, pairs: FloatArray) -> bool:
+    """Whether heaps of a level are others than those of the present settings, of the same grains."""
+    return step.key not in (RESAMPLED, EVALUATION) and bool((pairs[:, 0] != pairs[:, 1]).any())
 
 
 def _difference(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect:
+    """By Student's interval of the pairs alone."""
     change = pairs[:, 1] - pairs[:, 0]
-    n, mean, spread = len(change), float(change.mean()), float(change.std(ddof=1))
+    spread = float(change.std(ddof=1))
 
     def half(count: int) -> float:
-        return float(student_t.ppf((1 + CONFIDENCE) / 2, count - 1) * spread / count**0.5)
+        return float(_student(count - 1) * spread / count**0.5)
 
-    decided = abs(mean) > half(n)
-    needed = None if decided else _first(lambda count: half(count) < abs(mean), n)
-    return AngleEffect(step, level, mean, mean - half(n), mean + half(n), n, decided, needed)
+    return _effect(step, level, float(change.mean()), len(change), half)
+
+
+def _effect(step: ChainStep, level: str, change: float, n: int, half: Callable[[int], float]) -> AngleEffect:
+    """``half``: half width of the interval of so many pairs."""
+    decided = abs(change) > half(n)
+    needed = None if decided else _first(lambda count: half(count) < abs(change), n)
+    return AngleEffect(step, level, change, change - half(n), change + half(n), n, decided, needed)
 
 
 def _added_spread(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect:
@@ -276,13 +368,13 @@ def _added_spread(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect
     ratio = other / same if same > 0.0 else np.inf
 
     def added(quantile: float, count: int) -> float:
-        return float(np.sqrt(max(other / f_distribution.ppf(quantile, count - 1, count - 1) - same, 0.0)))
+        return float(np.sqrt(max(other / fdtri(count - 1, count - 1, quantile) - same, 0.0)))
 
     low, high = (added(end, n) for end in ends)
     decided = low > 0.0
     needed = None
     if not decided:
-        needed = _first(lambda count: ratio > f_distribution.ppf(ends[0], count - 1, count - 1), n)
+        needed = _first(lambda count: ratio > fdtri(count - 1, count - 1, ends[0]), n)
     return AngleEffect(step, level, float(np.sqrt(max(other - same, 0.0))), low, high, n, decided, needed)
 
 

@@ -78,16 +78,54 @@ def test_that_a_difference_is_decided_as_by_a_paired_t_test() -> None:
         "small": nominal + 0.3 * np.array([1, -1] * 4),
     }
     changed["small"] += 0.1
-    budget = angle_budget(nominal, changed)
-    large, small = budget.effects
+    (large,), (small,) = (angle_budget(nominal, {key: changed[key]}).effects for key in changed)
     known = ttest_rel(changed["large"], nominal).confidence_interval()
     assert (large.low, large.high) == pytest.approx((known.low, known.high))
     assert (large.decided, large.heaps_needed) == (True, None)
     assert not small.decided
-    assert budget.step_variances()["small"] == 0.0
     assert 36 <= (small.heaps_needed or 0) <= 44  # (1.96 + a little) * .32 / .1 squared
+    budget = angle_budget(nominal, {"large": changed["large"]})
     assert budget.variance == pytest.approx(nominal.var(ddof=1) / 8 + large.change**2 / 4)
-    assert budget.half_width_with_undecided > budget.half_width
+    undecided = angle_budget(nominal, {"small": changed["small"]})
+    assert undecided.step_variances()["small"] == 0.0
+    assert undecided.half_width_with_undecided > undecided.half_width
+
+
+@pytest.mark.parametrize(
+    ("missing", "scatter", "low", "high"),
+    [(0.0, 1.0, 0.93, 0.97), (0.08, 1.0, 0.93, 0.97), (0.0, 2.0, 0.93, 0.97), (0.0, 0.3, 0.9, 0.96)],
+    ids=["complete", "8 % without an angle", "one level scatters twice", "one level scatters a third"],
+)
+def test_that_intervals_of_three_heaps_in_eight_steps_hold_the_change_as_often_as_they_state(
+    missing: float, scatter: float, low: float, high: float
+) -> None:
+    """Levels that change nothing; a heap has the effect of its seed and noise of 1."""
+    rng, held, halves = np.random.default_rng(3), [], []
+    for _ in range(250):
+        noise = rng.standard_normal((9, 3)) * np.array([1.0] * 8 + [scatter])[:, None]
+        angles = 30.0 + rng.standard_normal(3) + noise
+        angles[rng.random(angles.shape) < missing] = np.nan
+        for each in angle_budget(angles[0], {str(k): angles[k] for k in range(1, 9)}).effects:
+            held.append(each.low <= 0.0 <= each.high)
+            halves.append(each.high - each.change)
+    assert low <= np.mean(held) <= high
+    assert np.median(halves) < 2.2  # Student's of three pairs alone: 4.30 sqrt(2 / 3) 0.83 = 2.9
+
+
+def test_that_a_level_that_scatters_more_than_all_others_has_the_interval_of_its_own_pairs() -> None:
+    rng = np.random.default_rng(1)
+    angles = 30.0 + 0.5 * rng.standard_normal((7, 4))
+    angles[6] += [9.0, -9.0, 9.0, -9.0]
+    angles[3] = angles[0]  # the same grains: heaps of the present settings
+    *effects, wide = angle_budget(angles[0], {str(k): angles[k] for k in range(1, 7)}).effects
+    known = ttest_rel(angles[6], angles[0]).confidence_interval()
+    assert (wide.low, wide.high) == pytest.approx((known.low, known.high))
+    assert (effects[2].low, effects[2].high) == (0.0, 0.0)
+    halves = {round(each.high - each.change, 9) for k, each in enumerate(effects) if k != 2}
+    squares = angles[[0, 1, 2, 4, 5]]
+    squares = squares - squares.mean(axis=0) - squares.mean(axis=1, keepdims=True) + squares.mean()
+    # Analysis of variance by two factors: 4 x 3 degrees of freedom, Student's 2.179.
+    assert halves == {round(2.1788128296634177 * float((squares**2).sum() / 12 * 2 / 4) ** 0.5, 9)}
 
 
 def test_that_samples_of_grains_count_where_they_widen_the_spread() -> None:
