@@ -50,10 +50,7 @@ class ConvexPolyhedron:
     def from_half_spaces(cls, half_spaces: HalfSpaces) -> "ConvexPolyhedron":
         """Intersect half-spaces by the convex hull of the dual points n_i / h_i (Qhull).
 
-        Raises
-        ------
-        GeometryError
-            If the intersection is unbounded.
+        Raises GeometryError if the intersection is unbounded.
         """
         corners, triples = _dual_vertices(half_spaces)
         vertices, merged = _merged(corners)
@@ -135,10 +132,7 @@ class ConvexPolyhedron:
     ) -> "ConvexPolyhedron":
         """The polyhedron with every point x at ``scale * rotation @ (x + shift)``.
 
-        Raises
-        ------
-        GeometryError
-            If the origin does not stay strictly inside.
+        Raises GeometryError if the origin does not stay strictly inside.
         """
         step = np.asarray(shift, dtype=np.float64)
         turn = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)

@@ -100,10 +100,7 @@ def longest_chord(points: FloatArray) -> float:
     than the longest so far are divided. A cell is bounded by its radius, and by its height along the
     direction in which it lies, which is small on a surface that faces that way.
 
-    Parameters
-    ----------
-    points
-        Shape (n, 3), about the origin, which lies among them.
+    ``points``: shape (n, 3), about the origin, which lies among them.
     """
     order, cells = _tree(points)
     ordered = np.ascontiguousarray(points[order])

@@ -22,12 +22,7 @@ def exits(
 ) -> None:
     """Fill `radius` (k,), infinite where no plane is met, and `plane` (k,), the first of several that tie.
 
-    Parameters
-    ----------
-    normals, offsets
-        Half-spaces <n_i, x> <= h_i with h_i > 0, shapes (n, 3) and (n,).
-    directions
-        Unit vectors, shape (k, 3).
+    The half-spaces are <n_i, x> <= h_i with h_i > 0, the directions unit vectors (k, 3).
     """
     coordinates, largest, place = np.empty((3, BLOCK)), np.empty(BLOCK), np.empty(BLOCK)
     for start in range(0, len(directions), BLOCK):
@@ -106,10 +101,7 @@ class HalfSpaces:
     def from_points(cls, points: ArrayLike) -> "HalfSpaces":
         """From the foot points p_i of Eq. 6, shape (n, 3): normal p_i / d_i, offset d_i, its length.
 
-        Raises
-        ------
-        GeometryError
-            If a point lies at the origin.
+        Raises GeometryError if a point lies at the origin.
         """
         feet = np.asarray(points, dtype=np.float64)
         lengths = np.linalg.norm(feet, axis=1)
@@ -132,13 +124,7 @@ class HalfSpaces:
         return HalfSpaces(self.normals, self.offsets * factor)
 
     def radii(self, directions: FloatArray) -> FloatArray:
-        """Distance from the origin to the boundary of the intersection along unit `directions`.
-
-        Parameters
-        ----------
-        directions
-            Shape (k, 3). The result has shape (k,) and is infinite where no plane is met.
-        """
+        """Distance to the boundary along unit `directions` (k, 3), infinite where no plane is met; (k,)."""
         rays = np.array(directions, dtype=np.float64, order="C")
         radius, plane = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
         # Copies, as the kernel would be compiled once more for arrays that cannot be written.
@@ -150,11 +136,7 @@ def inscribed_ball(normals: FloatArray, offsets: FloatArray) -> tuple[FloatArray
     """Centre (3,) and radius of the largest ball in <n_i, x> <= h_i (Chebyshev centre, HiGHS).
 
     The radius is negative where the half-spaces have no point in common, and NaN where they are unbounded.
-
-    Parameters
-    ----------
-    normals, offsets
-        Unit vectors (n, 3), and distances (n,) of any sign; sizes near 1, as HiGHS has absolute tolerances.
+    Normals are unit vectors, offsets of any sign; sizes must be near 1, as HiGHS has absolute tolerances.
     """
     rows = np.column_stack([normals, np.ones(len(normals))])
     optimum = linprog([0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=(None, None), method="highs")

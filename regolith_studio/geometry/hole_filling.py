@@ -20,14 +20,9 @@ MAX_EXACT_BOUNDARY = 300
 class FilledHoles:
     """A mesh whose holes are closed.
 
-    Parameters
-    ----------
-    vertices, faces
-        Those of the open mesh, then the new ones.
-    count
-        Number of holes.
-    area
-        Area of all new triangles, in the square of the mesh's unit.
+    - ``vertices``, ``faces``: those of the open mesh, then the new ones.
+    - ``count``: number of holes.
+    - ``area``: area of all new triangles, in the square of the mesh's unit.
     """
 
     vertices: FloatArray
@@ -196,14 +191,10 @@ OFF_CENTRE = (0.0123, 0.0171, 0.0087)
 class Enclosure:
     """How a surface encloses, before and after its holes are closed.
 
-    Parameters
-    ----------
-    wrapped_once
-        Share of the volume about which the closed surface winds that it winds about exactly once.
-    inside
-        Share of that volume about which the open surface alone winds by more than a half.
-    winding
-        Mean winding number of the open surface there: 1 of a closed surface, 0.5 of a flat sheet.
+    - ``wrapped_once``: share of the volume about which the closed surface winds that it winds about exactly
+      once.
+    - ``inside``: share of that volume about which the open surface alone winds by more than a half.
+    - ``winding``: mean winding number of the open surface there: 1 of a closed surface, 0.5 of a flat sheet.
     """
 
     wrapped_once: float
@@ -233,19 +224,9 @@ def enclosure(closed: Mesh, n_cover: int) -> Enclosure:
 
 
 def require_closed_volume(closed: Mesh, n_cover: int, share: float) -> None:
-    """Raise an error if a closed mesh bounds no volume without its cover: crumpled and curved sheets.
+    """Raise GeometryError if a closed mesh bounds no volume without its cover, which has `share` of its area.
 
-    Parameters
-    ----------
-    closed, n_cover
-        As for :func:`enclosure`.
-    share
-        Of the surface that the cover has.
-
-    Raises
-    ------
-    GeometryError
-        With a sentence that says what is missing.
+    Such meshes are crumpled and curved sheets; see :func:`enclosure`.
     """
     sheet = "The mesh is an open sheet, not a body:"
     if share > MAX_COVER:

@@ -37,13 +37,7 @@ def volume_moments(
 
     Sums of the signed tetrahedra between `middle` and the triangles: with corners a, b, c and their sum s the
     moments of one are s / 24 and (s s' + a a' + b b' + c c') / 120 times six volumes (divergence theorem).
-
-    Parameters
-    ----------
-    points, faces
-        Closed mesh, shapes (n, 3) and (m, 3).
-    middle
-        Near the mesh, so that little is lost to rounding, shape (3,).
+    `middle` (3,) lies near the closed mesh, so that little is lost to rounding.
     """
     volume = x = y = z = xx = yy = zz = xy = yz = zx = 0.0
     origin = middle[0], middle[1], middle[2]
@@ -73,11 +67,6 @@ def volume_and_area(vertices: FloatArray, faces: IntArray) -> tuple[float, float
     """Signed volume (divergence theorem, about the middle of the bounds) and surface area of triangles.
 
     Equal to ``Mesh.volume`` and ``Mesh.surface_area`` but for rounding, in one compiled pass.
-
-    Parameters
-    ----------
-    vertices, faces
-        Shapes (n, 3) and (m, 3); no faces give 0.
     """
     return _measured(vertices, faces) if len(faces) else (0.0, 0.0)
 
@@ -107,13 +96,7 @@ def _middle(points: FloatArray) -> Vector:
 
 
 def equal_ellipsoid(inertia: FloatArray, volume: float) -> FloatArray:
-    """Semi-axes, longest first, of the ellipsoid of this volume and the same ratios of second moments.
-
-    Parameters
-    ----------
-    inertia
-        Tensor of inertia of the solid at volume and density 1, shape (3, 3).
-    """
+    """Semi-axes, longest first, of the ellipsoid of this volume with the inertia (3, 3) of volume 1."""
     # The second moments, which for an ellipsoid go with the squares of its semi-axes.
     second = np.trace(inertia) / 2 * np.eye(3) - inertia
     shape = np.sqrt(np.linalg.eigvalsh(second)[::-1])
@@ -145,10 +128,8 @@ class CachedArray(Generic[T]):
     :data:`MAX_CACHED_BYTES`, and recomputed at the next access: hundreds of open particles do not each hold
     the arrays that they were measured by.
 
-    Parameters
-    ----------
-    compute
-        A method without arguments whose value is an array, or has arrays as ``vertices`` and ``faces``.
+    ``compute``: a method without arguments whose value is an array, or has arrays as ``vertices`` and
+    ``faces``.
     """
 
     def __init__(self, compute: Callable[[Any], T]) -> None:
@@ -298,10 +279,7 @@ class Mesh:
     def hull(self) -> "Mesh":
         """Convex hull (Qhull), triangulated, with outward normals.
 
-        Raises
-        ------
-        GeometryError
-            If the vertices lie in one plane.
+        Raises GeometryError if the vertices lie in one plane.
         """
         low, high = self.bounds
         size = float((high - low).max())
@@ -339,10 +317,7 @@ class Mesh:
     def normalised(self) -> "Mesh":
         """The mesh centred at its centroid and scaled to unit volume.
 
-        Raises
-        ------
-        GeometryError
-            If the volume is not positive.
+        Raises GeometryError if the volume is not positive.
         """
         if not self.volume > 0.0:
             raise GeometryError(f"The mesh encloses no volume (its signed volume is {self.volume:.3g}).")

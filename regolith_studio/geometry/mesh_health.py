@@ -36,15 +36,6 @@ def is_star_shaped(vertices: FloatArray, faces: IntArray, point: ArrayLike) -> b
     point, the central projection onto the sphere preserves orientation everywhere, so that each direction is
     covered by the same number of triangles, which is counted for one of them. If that number is 1, the
     projection is one to one: no two triangles can cross, and the point sees the whole surface.
-
-    Parameters
-    ----------
-    vertices
-        Shape (n, 3).
-    faces
-        Shape (m, 3).
-    point
-        Shape (3,).
     """
     if len(faces) < 4:
         return False
@@ -103,35 +94,25 @@ DEGENERATE_HEIGHT = 1e-9
 class MeshHealth:
     """The findings about one mesh.
 
-    Parameters
-    ----------
-    faces, vertices
-        Their numbers; vertices that no face uses do not count.
-    bodies
-        Number of parts that hang together across shared edges.
-    watertight
-        Every edge belongs to exactly two triangles.
-    consistent_winding
-        Neighbouring triangles run the opposite way along their common edge.
-    volume
-        Signed, in the cube of the mesh's unit; negative where the mesh is inside out, 0 where it is flat.
-    euler_number
-        Vertices - edges + faces: 2 for each closed body without handles.
-    degenerate_faces, duplicate_faces
-        Triangles without area, and triangles on the same three vertices as one before.
-    open_edges, non_manifold_edges
-        Edges of one triangle, and edges of more than two (non-manifold).
-    inverted_bodies
-        Closed bodies whose triangles face inwards: cavities, nested shells, inside-out parts.
-    seam_vertices
-        Vertices that lie exactly where another one lies: seams of textures cut the surface there.
-    self_intersections
-        Pairs of triangles that cross; ``None`` where they were not searched for.
-    problems
-        One plain sentence each.
-    pinched_corners
-        How often parts of a watertight surface touch in a single corner, which lowers the Euler number by 1
-        without any handle.
+    - ``faces``, ``vertices``: their numbers; vertices that no face uses do not count.
+    - ``bodies``: number of parts that hang together across shared edges.
+    - ``watertight``: every edge belongs to exactly two triangles.
+    - ``consistent_winding``: neighbouring triangles run the opposite way along their common edge.
+    - ``volume``: signed, in the cube of the mesh's unit; negative where the mesh is inside out, 0 where it is
+      flat.
+    - ``euler_number``: vertices - edges + faces: 2 for each closed body without handles.
+    - ``degenerate_faces``, ``duplicate_faces``: triangles without area, and triangles on the same three
+      vertices as one before.
+    - ``open_edges``, ``non_manifold_edges``: edges of one triangle, and edges of more than two
+      (non-manifold).
+    - ``inverted_bodies``: closed bodies whose triangles face inwards: cavities, nested shells, inside-out
+      parts.
+    - ``seam_vertices``: vertices that lie exactly where another one lies: seams of textures cut the surface
+      there.
+    - ``self_intersections``: pairs of triangles that cross; ``None`` where they were not searched for.
+    - ``problems``: one plain sentence each.
+    - ``pinched_corners``: how often parts of a watertight surface touch in a single corner, which lowers the
+      Euler number by 1 without any handle.
     """
 
     faces: int
@@ -177,14 +158,9 @@ class MeshHealth:
 
 
 def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
-    """Look for everything that can be wrong with a mesh.
+    """Look for everything that can be wrong with a mesh of any scale and position.
 
-    Parameters
-    ----------
-    mesh
-        Of any scale and position.
-    self_intersections
-        Whether to search for crossing triangles (the slow part; never above 200,000 faces).
+    The search for crossing triangles is the slow part; it is left out above 200,000 faces.
     """
     vertices, faces = unit_size(mesh)
     links = Connectivity.of(faces, len(vertices))

@@ -17,16 +17,10 @@ from regolith_studio.geometry.kernels import kernel
 class EdgeTable:
     """The undirected edges of m triangles; half-edge 3 f + k runs from corner k of face f to the next.
 
-    Parameters
-    ----------
-    ends
-        Vertices of each edge, the lower index first, shape (e, 2).
-    uses
-        Number of triangles at each edge, shape (e,).
-    edge
-        Edge of each half-edge, shape (3 m,).
-    forward
-        Whether each half-edge runs from the lower index to the higher, shape (3 m,).
+    - ``ends``: vertices of each edge, the lower index first, shape (e, 2).
+    - ``uses``: number of triangles at each edge, shape (e,).
+    - ``edge``: edge of each half-edge, shape (3 m,).
+    - ``forward``: whether each half-edge runs from the lower index to the higher, shape (3 m,).
     """
 
     ends: IntArray
@@ -68,14 +62,9 @@ def neighbours(table: EdgeTable) -> IntArray:
 class MeshBodies:
     """Triangles connected across edges.
 
-    Parameters
-    ----------
-    body
-        Index of each triangle's body, shape (m,), from 0.
-    turned
-        Whether a triangle must be turned round to agree with the first of its body, shape (m,).
-    conflicts
-        Number of edges across which no turning can bring agreement (one-sided surfaces).
+    - ``body``: index of each triangle's body, shape (m,), from 0.
+    - ``turned``: whether a triangle must be turned round to agree with the first of its body, shape (m,).
+    - ``conflicts``: number of edges across which no turning can bring agreement (one-sided surfaces).
     """
 
     body: IntArray
@@ -150,18 +139,11 @@ MAX_CACHED_FACES = 100_000
 class Connectivity:
     """How m triangles are connected; its arrays are read-only, because it may be shared.
 
-    Parameters
-    ----------
-    table
-        Their edges.
-    across
-        For each half-edge the one across an edge of exactly two triangles, else -1; shape (3 m,).
-    parts
-        The bodies that they form.
-    vertices_used
-        Number of vertices that a face uses.
-    duplicate_faces
-        Triangles on the same three vertices as one before.
+    - ``table``: their edges.
+    - ``across``: for each half-edge the one across an edge of exactly two triangles, else -1; shape (3 m,).
+    - ``parts``: the bodies that they form.
+    - ``vertices_used``: number of vertices that a face uses.
+    - ``duplicate_faces``: triangles on the same three vertices as one before.
     """
 
     table: EdgeTable

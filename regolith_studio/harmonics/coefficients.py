@@ -88,10 +88,7 @@ class ShCoefficients:
     def truncated(self, l_max: int) -> "ShCoefficients":
         """The coefficients up to `l_max` (Eq. 4).
 
-        Raises
-        ------
-        InputError
-            If `l_max` is negative or above the degree of these coefficients.
+        Raises InputError if `l_max` is negative or above the degree of these coefficients.
         """
         if l_max == self.l_max:
             return self

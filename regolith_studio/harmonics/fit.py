@@ -115,10 +115,7 @@ class HarmonicFit:
     def truncated(self, l_max: int) -> "HarmonicFit":
         """The fit cut at `l_max`, with the radial error that it has there.
 
-        Raises
-        ------
-        InputError
-            If `l_max` is negative or above the degree of this fit.
+        Raises InputError if `l_max` is negative or above the degree of this fit.
         """
         if l_max == self.l_max:
             return self

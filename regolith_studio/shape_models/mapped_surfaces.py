@@ -220,12 +220,10 @@ def _power(rows: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class SurfaceSettings:
-    """Parameters
-    ----------
-    l_max
-        Degree of the particles drawn; by default all that the sample has.
-    size_jitter
-        Standard deviation of ln r_eq about the measured one.
+    """Settings of mapped surfaces.
+
+    - ``l_max``: degree of the particles drawn; by default all that the sample has.
+    - ``size_jitter``: standard deviation of ln r_eq about the measured one.
     """
 
     l_max: int = 30

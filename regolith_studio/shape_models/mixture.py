@@ -30,18 +30,13 @@ MIN_DEVIATION = 1e-3
 
 @dataclass(frozen=True)
 class MixtureSettings:
-    """Parameters
-    ----------
-    l_max
-        Degree of the particles.
-    n_components
-        Number of components; 0 for the best by the criterion.
-    max_components
-        Highest number tried.
-    n_starts
-        Starts for each number; the most likely one is kept.
-    seed
-        Of the starts.
+    """Settings of mixtures of Gaussians.
+
+    - ``l_max``: degree of the particles.
+    - ``n_components``: number of components; 0 for the best by the criterion.
+    - ``max_components``: highest number tried.
+    - ``n_starts``: starts for each number; the most likely one is kept.
+    - ``seed``: of the starts.
     """
 
     l_max: int = 10

@@ -64,10 +64,8 @@ class Sample:
     def of(cls, particles: Sequence[ShCoefficients], names: Sequence[str] = (), unit: str = "um") -> "Sample":
         """From the coefficients of each particle.
 
-        Raises
-        ------
-        InputError
-            If they differ in l_max (:meth:`cut` of each makes them alike), or as the class itself.
+        Raises InputError if they differ in l_max (:meth:`cut` of each makes them alike), or as the class
+        itself.
         """
         degrees = sorted({particle.l_max for particle in particles})
         if len(degrees) > 1:
@@ -115,10 +113,7 @@ class Sample:
     def truncated(self, l_max: int) -> "Sample":
         """All expansions cut at `l_max` (Eq. 4).
 
-        Raises
-        ------
-        InputError
-            If the sample was not expanded so far.
+        Raises InputError if the sample was not expanded so far.
         """
         if not 0 <= l_max <= self.l_max:
             raise InputError(f"The sample is expanded to l_max = {self.l_max}, so it has no l_max = {l_max}.")
@@ -134,10 +129,7 @@ class Sample:
     def star_shaped(self) -> "Sample":
         """Only the particles whose radius is positive everywhere, for models of its logarithm.
 
-        Raises
-        ------
-        InputError
-            If fewer than two are left.
+        Raises InputError if fewer than two are left.
         """
         keep = np.flatnonzero(self.min_radii > 0)
         if len(keep) == len(self):

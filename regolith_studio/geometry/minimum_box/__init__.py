@@ -72,14 +72,9 @@ Contacts = tuple[int, int, int, int]
 class BestBox(NamedTuple):
     """The best box so far.
 
-    Parameters
-    ----------
-    record
-        The least volume, and the sum of the edges of its box, shape (2,).
-    axes
-        One a row, shape (3, 3).
-    todo
-        Scratch: ends of the pieces of a curve still to be searched, shape (DEPTH, 2).
+    - ``record``: the least volume, and the sum of the edges of its box, shape (2,).
+    - ``axes``: one a row, shape (3, 3).
+    - ``todo``: scratch: ends of the pieces of a curve still to be searched, shape (DEPTH, 2).
     """
 
     record: FloatArray
@@ -113,14 +108,9 @@ def update_if_smaller(
 class Work(NamedTuple):
     """Scratch.
 
-    Parameters
-    ----------
-    dots
-        Scalar products of two normals with those of all n facets, shape (2, n).
-    side
-        How many of them are not negative, shape (n,).
-    ends
-        Of at most two curves: curve, end, place on either arc; shape (2, 2, 2).
+    - ``dots``: scalar products of two normals with those of all n facets, shape (2, n).
+    - ``side``: how many of them are not negative, shape (n,).
+    - ``ends``: of at most two curves: curve, end, place on either arc; shape (2, 2, 2).
     """
 
     dots: FloatArray
@@ -141,21 +131,12 @@ def minimum_box(facets: Facets, max_turn: float = np.inf, known: FloatArray | No
     holds, where a box is known, for solids with more than `max_turn`; where that is not enough, no box with a
     side on a facet is smaller.
 
-    Parameters
-    ----------
-    facets
-        The solid.
-    max_turn
-        Half the sum, in radians, of the angles between neighbouring facets at edges that cannot be ruled out
-        one by one. The search takes about 0.1 ms times its square: 20 for a rough particle, 1,800 for a cone
-        of 3,000 points.
-    known
-        Axes of a box that is nearly the least, which rules out most edges at once.
+    - ``max_turn``: half the sum, in radians, of the angles between neighbouring facets at edges that cannot
+      be ruled out one by one. The search takes about 0.1 ms times its square: 20 for a rough particle, 1,800
+      for a cone of 3,000 points.
+    - ``known``: axes of a box that is nearly the least, which rules out most edges at once.
 
-    Raises
-    ------
-    TooManyCurvesError
-        If a solid of more than 100 facets has more, and no box is known.
+    Raises TooManyCurvesError if a solid of more than 100 facets has more, and no box is known.
     """
     best, margin = empty_record(np.inf), TIE
     points, normals, edges = facets
@@ -268,15 +249,7 @@ def _curve_ends(dots: FloatArray, three: int, four: int, ends: FloatArray) -> in
 
     With a = one + s (two - one) and b likewise with t, a . b is bilinear in (s, t): a hyperbola, that the
     square of (s, t) cuts into at most two pieces.
-
-    Parameters
-    ----------
-    dots
-        Of the facets of the first arc with all facets.
-    three, four
-        Facets of the second arc.
-    ends
-        Filled: curve, end, (s, t).
+    `dots` are those of the first arc with all facets; `ends` is filled: curve, end, (s, t).
     """
     s00, s01, s10, s11 = dots[0, three], dots[0, four], dots[1, three], dots[1, four]
     p00, p01, p10, p11 = s00 >= 0.0, s01 >= 0.0, s10 >= 0.0, s11 >= 0.0
@@ -350,15 +323,7 @@ def min_on_curve(
 
     A piece is ruled out by a bound, or cut where the bound is least, or where the bound of the vertices
     touched in its middle meets that of the vertices touched there.
-
-    Parameters
-    ----------
-    points
-        Vertices of the solid, shape (3, n).
-    table
-        As from :func:`regolith_studio.geometry.minimum_box.hull_topology.span_table`.
-    foot_a, foot_b
-        A vertex of each edge.
+    `foot_a` and `foot_b` are a vertex of each edge.
     """
     bottom = denominator(curve)
     least, at = np.inf, 0.0

@@ -76,10 +76,7 @@ def curve_between(
 ) -> Curve:
     """The curve from the frame (a_from, b_from) to (a_to, b_to); a must turn at least as far as b.
 
-    Parameters
-    ----------
-    edge_a, edge_b
-        Unit directions of the edges; a turns about `edge_a`, b about `edge_b`.
+    ``edge_a``, ``edge_b``: unit directions of the edges; a turns about `edge_a`, b about `edge_b`.
     """
     a = unit(mixed(a_from, 1.0, a_to, 1.0))
     b = cross(edge_b, a)

@@ -20,12 +20,8 @@ BLOCK = 256
 class SpanTable(NamedTuple):
     """A vector across the solid for each cell of directions.
 
-    Parameters
-    ----------
-    spans
-        Between the vertices farthest along and against the cell's middle, shape (3 cells^2, 3).
-    cells
-        Along the edge of a cube; those of one direction and of its opposite are the same.
+    - ``spans``: between the vertices farthest along and against the cell's middle, shape (3 cells^2, 3).
+    - ``cells``: along the edge of a cube; those of one direction and of its opposite are the same.
     """
 
     spans: FloatArray
@@ -139,14 +135,9 @@ MAX_TILT = 0.1
 class Facets(NamedTuple):
     """A convex solid of size about 1 near the origin.
 
-    Parameters
-    ----------
-    points
-        Vertices, shape (3, v).
-    normals
-        Of the facets, shape (n, 3); no two neighbours lie in one plane.
-    edges
-        Rows (from, to, facet, other facet), shape (e, 4).
+    - ``points``: vertices, shape (3, v).
+    - ``normals``: of the facets, shape (n, 3); no two neighbours lie in one plane.
+    - ``edges``: rows (from, to, facet, other facet), shape (e, 4).
     """
 
     points: FloatArray
@@ -157,13 +148,9 @@ class Facets(NamedTuple):
 def facets_of_hull(points: FloatArray, faces: IntArray) -> Facets | None:
     """Plane facets of a closed triangulated convex solid, and the edges between them.
 
-    ``None`` where the triangles do not close: where an edge is not run once each way, a vertex has no
-    triangle, or a triangle has no normal, not even one of a neighbour.
-
-    Parameters
-    ----------
-    points, faces
-        Vertices of a solid of size about 1 near the origin (n, 3), and outward triangles (m, 3).
+    The solid has a size of about 1 and lies near the origin. ``None`` where the triangles do not close: where
+    an edge is not run once each way, a vertex has no triangle, or a triangle neither a normal nor a neighbour
+    with one.
     """
     origin, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
     forward, backward = origin * len(points) + end, end * len(points) + origin
@@ -227,14 +214,7 @@ def _fill_facets(
 ) -> None:
     """Fill the first face of the facet of each face; all its faces get the normal that rounding tilts least.
 
-    Parameters
-    ----------
-    order
-        Faces by rising blur.
-    facet
-        -1 before, shape (m,).
-    stack
-        Scratch, shape (m,).
+    `order` has the faces by rising blur; `facet` (m,) must be -1, `stack` (m,) is scratch.
     """
     for i in range(len(order)):
         seed = order[i]

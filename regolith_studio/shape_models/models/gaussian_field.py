@@ -24,10 +24,9 @@ KEY = "gaussian_field"
 
 @dataclass(frozen=True)
 class GaussianFieldSettings:
-    """Parameters
-    ----------
-    l_max
-        Degree of the particles; the paper's is 10 (section 3.1).
+    """Settings of the Gaussian field.
+
+    ``l_max``: degree of the particles; the paper's is 10 (section 3.1).
     """
 
     l_max: int = 10

@@ -71,12 +71,10 @@ FORM_STEPS = (1, 2)
 
 @dataclass(frozen=True)
 class HullFieldSettings:
-    """Parameters
-    ----------
-    l_max
-        Degree of ln r, 3 to 30.
-    size_law
-        Key of ``SIZE_LAWS``.
+    """Settings of the hull field.
+
+    - ``l_max``: degree of ln r, 3 to 30.
+    - ``size_law``: key of ``SIZE_LAWS``.
     """
 
     l_max: int = 30

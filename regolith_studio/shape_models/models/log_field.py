@@ -32,17 +32,13 @@ SPECTRUM_JITTER = 0.1
 
 @dataclass(frozen=True)
 class LogFieldSettings:
-    """Parameters
-    ----------
-    l_max
-        Degree of ln r.
-    spectrum
-        ``resampled``: each particle has the power per degree of a measured one of its size; ``pooled``: one
-        spectrum for all, which can be edited and written on a material card.
-    size_law
-        Key of ``SIZE_LAWS``.
-    size_dependent
-        Whether the pooled spectrum follows a power of size, fitted degree by degree.
+    """Settings of the field of ln r.
+
+    - ``l_max``: degree of ln r.
+    - ``spectrum``: ``resampled``: each particle has the power per degree of a measured one of its size;
+      ``pooled``: one spectrum for all, which can be edited and written on a material card.
+    - ``size_law``: key of ``SIZE_LAWS``.
+    - ``size_dependent``: whether the pooled spectrum follows a power of size, fitted degree by degree.
     """
 
     l_max: int = 10

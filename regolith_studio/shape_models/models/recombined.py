@@ -221,12 +221,10 @@ ATTEMPTS = 5
 
 @dataclass(frozen=True)
 class RecombinedSettings(SurfaceSettings):
-    """Parameters
-    ----------
-    n_neighbours
-        The surface comes from one of so many particles with the nearest share of the hull.
-    n_candidates
-        Surfaces that are tried for each particle.
+    """Settings of recombined particles.
+
+    - ``n_neighbours``: the surface comes from one of so many particles with the nearest share of the hull.
+    - ``n_candidates``: surfaces that are tried for each particle.
     """
 
     n_neighbours: int = setting(

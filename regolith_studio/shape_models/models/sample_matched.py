@@ -50,18 +50,16 @@ HALVINGS = 4
 
 @dataclass(frozen=True)
 class SampleMatchedSettings(SurfaceSettings):
-    """Parameters
-    ----------
-    turn
-        Mean angle of the rotation of a round particle, radians; angles are even between 0.6 and 1.4 times as
-        much, and smaller by short over long axis: on a long particle the same angle changes more, and more
-        turning makes it rougher than the measured one.
-    n_neighbours
-        The ellipsoid comes from one of so many particles nearest in elongation and flatness, itself among
-        them.
-    mirrored
-        Whether particles are mirrored in the end, which changes no descriptor. Mirror images are as far from
-        the measured particles as other particles of the material are; without it draws are near copies.
+    """Settings of matched particles.
+
+    - ``turn``: mean angle of the rotation of a round particle, radians; angles are even between 0.6 and 1.4
+      times as much, and smaller by short over long axis: on a long particle the same angle changes more, and
+      more turning makes it rougher than the measured one.
+    - ``n_neighbours``: the ellipsoid comes from one of so many particles nearest in elongation and flatness,
+      itself among them.
+    - ``mirrored``: whether particles are mirrored in the end, which changes no descriptor. Mirror images are
+      as far from the measured particles as other particles of the material are; without it draws are near
+      copies.
     """
 
     turn: float = setting(
