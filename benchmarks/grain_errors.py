@@ -26,9 +26,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging import grain_surface
 from regolith_studio.imaging.extraction import extract_particles
+from regolith_studio.imaging.grain_surface import coverage
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.settings import ExtractionSettings
-from regolith_studio.imaging.surface_refinement import coverage
 from regolith_studio.imaging.volume import Volume
 from tools.make_samples.grains import even_sphere, random_rotation
 from tools.make_samples.random_fields import SphereField, power_law

@@ -24,9 +24,9 @@ from regolith_studio.geometry.arrays import BoolArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.extraction import extract_particles
+from regolith_studio.imaging.grain_surface import coverage
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.settings import ExtractionSettings, ThresholdSettings
-from regolith_studio.imaging.surface_refinement import coverage
 from regolith_studio.imaging.volume import Volume
 
 ACROSS, MANY, NOISES, BLUR = (8, 12, 20, 40, 100), 20, (0.0, 0.2), 0.8

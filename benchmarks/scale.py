@@ -124,7 +124,7 @@ def _recipe(inputs: list[str], archive: bool, population: dict[str, Any] | None 
 
 def write_archive(path: Path, particles: int) -> None:
     """Virtual particles of 2,000 triangles as STL, half of them in a compressed archive in the archive."""
-    from regolith_studio.geometry.decimation import decimated
+    from regolith_studio.coarsening.decimated_hull import decimated
     from regolith_studio.io.triangles import stl_bytes
     from regolith_studio.shape_models.materials import materials
     from regolith_studio.shape_models.realizations import virtual_mesh

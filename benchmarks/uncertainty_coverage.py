@@ -27,9 +27,9 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.imaging.grain_surface import coverage
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import CleaningSettings, ExtractionSettings, SplittingSettings
-from regolith_studio.imaging.surface_refinement import coverage
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.jobs.uncertainty_chain import RESCANNED, Chain, GrainSample

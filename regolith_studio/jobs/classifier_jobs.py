@@ -43,9 +43,8 @@ from regolith_studio.imaging.segmentation.segment import (
 )
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
 from regolith_studio.imaging.settings import ThresholdSettings
-from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Volume, box_between
-from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceImages, SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.own_files import canonical_json
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps

@@ -33,12 +33,13 @@ from regolith_studio.imaging.segmentation.segment import (
 )
 from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
 from regolith_studio.imaging.settings import ThresholdSettings
-from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.volume import Box, Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,
+    SliceImages,
     SliceSource,
+    coarse_copy,
     slab_ranges,
     sparse_slices,
     unpacked,

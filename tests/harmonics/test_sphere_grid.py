@@ -17,7 +17,7 @@ from regolith_studio.harmonics.sphere_grid import (
     synthesise_rings,
 )
 from regolith_studio.harmonics.transform import call_shtools, ray_grid
-from regolith_studio.shape_models.convex_hull import hull_grid
+from regolith_studio.shape_models.shape_features import hull_grid
 
 
 def test_that_harmonics_are_scipys_made_real_without_the_condon_shortley_phase():

@@ -8,16 +8,17 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.contours import contour, windowed_sinc
-from regolith_studio.imaging.grain_surface import grey_mesh, mask_mesh
-from regolith_studio.imaging.label_table import GrainCrop
-from regolith_studio.imaging.surface_refinement import (
+from regolith_studio.imaging.grain_surface import (
     RefinementSettings,
     corner_normals,
     coverage,
+    grey_mesh,
+    mask_mesh,
     refined_to_mask,
     refined_to_scan,
     without_crossings,
 )
+from regolith_studio.imaging.label_table import GrainCrop
 from tools.make_samples.random_fields import SphereField, power_law
 
 EDGE, BLUR = 45, 0.8

@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.surface_refinement import coverage
+from regolith_studio.imaging.grain_surface import coverage
 
 CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
 HULL = Mesh(CORNERS, np.empty((0, 3), dtype=np.int64)).hull

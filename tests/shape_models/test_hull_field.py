@@ -10,29 +10,31 @@ from scipy.stats import spearmanr
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
-from regolith_studio.shape_models.calibration import (
-    FineDegrees,
-    GaussianCopula,
-    features_and_target,
-    measured_features,
-)
-from regolith_studio.shape_models.convex_hull import ROWS, hull_grid, supports
 from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, with_forms
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.shape_models.models.hull_field import HullFieldSettings
+from regolith_studio.shape_models.models.hull_field import (
+    FineDegrees,
+    GaussianCopula,
+    HullFieldSettings,
+    features_and_target,
+    measured_features,
+)
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample, log_shapes
 from regolith_studio.shape_models.shape_features import (
     CONVEXITY,
     FORM,
     POWERS,
+    ROWS,
     SPHERICITY,
+    hull_grid,
     outer_features_of_log_radii,
     outer_features_of_radii,
     powers,
     shape_features,
     shape_grid,
+    supports,
 )
 from tests.filling import filled
 

@@ -5,9 +5,9 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.mixture import MixtureSettings
 from regolith_studio.shape_models.models.gaussian_field import MODEL as GAUSSIAN_FIELD
 from regolith_studio.shape_models.models.gaussian_mixture import MODEL as GAUSSIAN_MIXTURE
+from regolith_studio.shape_models.models.gaussian_mixture import MixtureSettings
 from regolith_studio.shape_models.models.log_field import MODEL as LOG_FIELD
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldSettings
 from regolith_studio.shape_models.models.mixture_field import MODEL as MIXTURE

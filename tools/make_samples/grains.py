@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from regolith_studio.coarsening.decimated_hull import decimated
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.contours import contour
 from tools.make_samples.random_fields import SphereField, power_law

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from regolith_studio.coarsening.decimated_hull import decimated
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.errors import InputError, JobCancelled, RegolithError
-from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import staged_folder, write_bytes

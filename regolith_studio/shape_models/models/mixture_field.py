@@ -16,7 +16,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
-from regolith_studio.shape_models.mixture import (
+from regolith_studio.shape_models.models.gaussian_mixture import (
     MixtureSettings,
     NamedComponents,
     chosen_mixture,

@@ -34,7 +34,6 @@ from regolith_studio.harmonics.sphere_grid import enclosed_volumes, harmonics, s
 from regolith_studio.messages import N_
 from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import CHUNK
-from regolith_studio.shape_models.convex_hull import hull_grid
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.mapped_surfaces import (
     SurfaceSampler,
@@ -44,7 +43,7 @@ from regolith_studio.shape_models.mapped_surfaces import (
 )
 from regolith_studio.shape_models.realizations import positive_rows
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.shape_features import log_share
+from regolith_studio.shape_models.shape_features import hull_grid, log_share
 
 Floats = NDArray[np.float32]
 

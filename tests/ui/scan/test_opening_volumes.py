@@ -11,7 +11,7 @@ from PySide6.QtCore import QMimeData, QPoint, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent
 from PySide6.QtWidgets import QDialogButtonBox, QWidget
 
-from regolith_studio.imaging import slice_images
+from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
@@ -227,7 +227,7 @@ def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
 ):
     monkeypatch.setattr(scan_jobs, "IN_MEMORY", 100_000)
     monkeypatch.setattr(scan_jobs, "scratch_folder", lambda: tmp_path)
-    monkeypatch.setattr(slice_images, "COARSE_BYTES", 100_000)
+    monkeypatch.setattr(volume_slabs, "COARSE_BYTES", 100_000)
     array = sample_volume("grey").array[:90, :80, :70]
     if suffix == "npy":
         np.save(tmp_path / "big.npy", np.ascontiguousarray(array.T))

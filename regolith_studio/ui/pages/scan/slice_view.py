@@ -11,8 +11,8 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QWheelEvent
 from PySide6.QtWidgets import QLabel, QSlider, QWidget
 
-from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Box, Volume
+from regolith_studio.imaging.volume_slabs import SliceImages
 from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush
 from regolith_studio.ui.theme import Theme, current_theme

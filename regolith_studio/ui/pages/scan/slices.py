@@ -13,8 +13,8 @@ from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.imaging.label_surface import LabelSurface
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import Histogram
-from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Box, Volume, box_about, box_between
+from regolith_studio.imaging.volume_slabs import SliceImages
 from regolith_studio.jobs.classifier_jobs import SlicePrediction
 from regolith_studio.jobs.scan_jobs import Scan
 from regolith_studio.messages import N_

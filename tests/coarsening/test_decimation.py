@@ -8,7 +8,7 @@ import fast_simplification
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.decimation import decimated
+from regolith_studio.coarsening.decimated_hull import decimated
 from tests.geometry.solids import rough_stone
 
 STONES = [rough_stone(seed) for seed in range(4)]
