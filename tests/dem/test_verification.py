@@ -1,6 +1,7 @@
 """The lines of the verification against bodies whose motion is known in closed form."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,10 +19,11 @@ from regolith_studio.dem.verification import MeasuredLine, scenes
 from regolith_studio.dem.verification.bodies import N_FACETS, polyhedra_dataset
 from regolith_studio.dem.verification.certificate import Certificate, certificate_document, verifiable_engine
 from regolith_studio.dem.verification.dice import CLOSE, LOOSE, platonic_solids
-from regolith_studio.dem.verification.heaps import _paired_line
+from regolith_studio.dem.verification.heaps import HeapRuns, _paired_line
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs.events import result_of
+from regolith_studio.jobs import repose_jobs
+from regolith_studio.jobs.events import Progress, result_of
 
 
 @dataclass
@@ -186,3 +188,28 @@ def test_that_an_angle_comes_with_the_lines_that_its_engine_fails(monkeypatch: p
     assert engines.engine_notes(engine) == [f"Rapier was verified in version 0.1, not in {version}."]
     del known["rapier"]
     assert engines.engine_notes(engine) == ["Rapier was not verified."]
+
+
+def pair_of_seed(key: str, seed: int) -> Iterator[Progress]:
+    """In the place of two heaps, in another process."""
+    yield Progress(0, 1)
+    return (30.0, 30.0 + seed) if key == "rapier" else (0.0, 0.0)
+
+
+def lines_of_pairs(runs: HeapRuns, _keys: object) -> Iterator[tuple[str, None]]:
+    """The pairs that other processes compute, as the certificate."""
+    assert runs.further_pairs is not None
+    further = runs.further_pairs()
+    while True:
+        try:
+            next(further)
+        except StopIteration as end:
+            return end.value
+        yield "half_step", None
+
+
+def test_that_the_other_seeds_of_the_half_step_run_in_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(repose_jobs, "cores", lambda: 2)
+    monkeypatch.setattr(repose_jobs, "_step_pair", pair_of_seed)
+    monkeypatch.setattr(repose_jobs, "measure_lines", lines_of_pairs)
+    assert result_of(repose_jobs.verify_engine("rapier")) == [(30.0, 30.0 + seed) for seed in (1, 2, 3, 4)]

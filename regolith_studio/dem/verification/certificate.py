@@ -73,10 +73,10 @@ def verifiable_engine(key: str) -> VerifiableEngine:
 
 
 def measure_lines(
-    engine: VerifiableEngine, keys: tuple[str, ...]
+    runs: heaps.HeapRuns, keys: tuple[str, ...]
 ) -> Generator[tuple[str, MeasuredLine | None], None, Certificate]:
     """Measure lines; yields the key of the line at each turn, and the line as it is done."""
-    lines, runs = [], heaps.HeapRuns(engine)
+    lines, engine = [], runs.engine
     for key in keys:
         steps = HEAPS[key](runs) if key in HEAPS else SCENES[key](engine)
         while True:

@@ -1,8 +1,8 @@
 """Heaps of polyhedra: rest, contacts, threads, time step and gravity, each on the same cylinder test."""
 
 import tempfile
-from collections.abc import Generator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +38,7 @@ DEEP, DEEPEST, MAX_DEEP_SHARE = 0.02, 0.05, 0.01
 """Depth of a contact in mean diameters above which it is deep, depth that none has, and share of the deep."""
 EARTH, MOON = GRAVITIES["Earth"], GRAVITIES["Moon"]
 CONFIDENCE = 0.95
+AnglePair = tuple[float, float]
 
 
 def heap_case(seed: int, gravity: float = EARTH) -> PreparedCase:
@@ -59,25 +60,24 @@ class LiftedHeap:
 
 @dataclass(eq=False)
 class HeapRuns:
-    """Heaps of one engine with its usual settings, each simulated once for all lines that need it."""
+    """Heaps of one engine with its usual settings; the first is simulated once for all lines that need it."""
 
     engine: VerifiableEngine
-    heaps: dict[int, LiftedHeap] = field(default_factory=dict)
+    further_pairs: Callable[[], Generator[None, None, list[AnglePair]]] | None = None
+    """:func:`step_pair` of all seeds after the first, where other processes compute them."""
+    first: LiftedHeap | None = None
 
-    def lifted(self, seed: int) -> Generator[None, None, LiftedHeap]:
-        """The heap of a seed."""
-        if seed not in self.heaps:
-            run = _begun(self.engine, heap_case(seed))
-            yield from _turns(fill_cylinder(run))
-            filled = engine_state(run)
-            self.heaps[seed] = LiftedHeap(run, filled, (yield from _turns(lift_cylinder(run))))
-        return self.heaps[seed]
+    def lifted(self) -> Generator[None, None, LiftedHeap]:
+        """The heap of the first seed."""
+        if self.first is None:
+            self.first = yield from _lifted(self.engine, SEEDS[0])
+        return self.first
 
 
 @timed
 def settled_heap(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """How far particles of a heap at rest move."""
-    run = (yield from runs.lifted(0)).run
+    run = (yield from runs.lifted()).run
     before, end = run.solver.points.copy(), run.solver.time + AFTER_REST
     while run.solver.time < end:
         step = run.solver.time_step()
@@ -100,7 +100,7 @@ def settled_heap(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
 def contacts(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """How deep the polyhedra of a heap at rest overlap, by separating axes and not by the engine's word."""
     prepared = heap_case(0)
-    heap = (yield from runs.lifted(0)).ending.particles
+    heap = (yield from runs.lifted()).ending.particles
     depths = overlap_depths(prepared, heap) / prepared.mean_diameter
     deep, deepest = float((depths > DEEP).mean()) if len(depths) else 0.0, float(depths.max(initial=0.0))
     return MeasuredLine(
@@ -117,7 +117,7 @@ def contacts(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
 @timed
 def repeats(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """Whether one and two threads, and the same seed again, give the same heap to the last byte."""
-    heaps = [(yield from runs.lifted(0)).ending.particles]
+    heaps = [(yield from runs.lifted()).ending.particles]
     for threads in (2, 1):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / SNAPSHOTS).mkdir()
@@ -137,16 +137,12 @@ def repeats(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
 @timed
 def half_step(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle with half the time step, of the same filling."""
-    pairs = []
-    engine = runs.engine
-    usual = engine.Settings()
-    finer = replace(usual, time_step=usual.time_step / 2)
-    for seed in SEEDS:
-        heap = yield from runs.lifted(seed)
-        prepared = heap.run.prepared
-        again = LiftingRun(prepared, finer, engine.solver(prepared, finer))
-        other = yield from _turns(resume_lifting(again, heap.filled))
-        pairs.append((_angle(heap.ending), _angle(other)))
+    pairs = [(yield from _with_half_step(runs.engine, (yield from runs.lifted())))]
+    if runs.further_pairs is not None:
+        pairs += yield from runs.further_pairs()
+    else:
+        for seed in SEEDS[1:]:
+            pairs.append((yield from step_pair(runs.engine, seed)))
     return _paired_line(
         "half_step", "Change of the angle of repose with half the time step, same fillings", pairs
     )
@@ -172,9 +168,25 @@ def gravities(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     )
 
 
-def _begun(engine: VerifiableEngine, prepared: PreparedCase) -> LiftingRun:
-    settings = engine.Settings()
-    return LiftingRun(prepared, settings, engine.solver(prepared, settings))
+def step_pair(engine: VerifiableEngine, seed: int) -> Generator[None, None, AnglePair]:
+    """Angles of the heap of a seed with the usual step and with half of it, of the same filling."""
+    return (yield from _with_half_step(engine, (yield from _lifted(engine, seed))))
+
+
+def _with_half_step(engine: VerifiableEngine, heap: LiftedHeap) -> Generator[None, None, AnglePair]:
+    prepared, usual = heap.run.prepared, engine.Settings()
+    finer = replace(usual, time_step=usual.time_step / 2)
+    again = LiftingRun(prepared, finer, engine.solver(prepared, finer))
+    other = yield from _turns(resume_lifting(again, heap.filled))
+    return _angle(heap.ending), _angle(other)
+
+
+def _lifted(engine: VerifiableEngine, seed: int) -> Generator[None, None, LiftedHeap]:
+    prepared, settings = heap_case(seed), engine.Settings()
+    run = LiftingRun(prepared, settings, engine.solver(prepared, settings))
+    yield from _turns(fill_cylinder(run))
+    filled = engine_state(run)
+    return LiftedHeap(run, filled, (yield from _turns(lift_cylinder(run))))
 
 
 def _turns(steps: Generator[Any, None, Any]) -> Generator[None, None, Any]:
@@ -195,7 +207,7 @@ def _angle(ending: SimulationResult) -> float:
         return float("nan")
 
 
-def _paired_line(key: str, what: str, pairs: Sequence[tuple[float, float]]) -> MeasuredLine:
+def _paired_line(key: str, what: str, pairs: Sequence[AnglePair]) -> MeasuredLine:
     """The mean difference of pairs of angles with Student's interval; it passes if that contains zero."""
     known = np.array([pair for pair in pairs if np.isfinite(pair).all()]).reshape(-1, 2)
     differences = known[:, 1] - known[:, 0]
