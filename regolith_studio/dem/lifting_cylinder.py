@@ -228,16 +228,12 @@ def friction_in(phase: str, prepared: PreparedCase, settings: LiftingSettings) -
     return share * prepared.case.contact.static_friction
 
 
-MAX_SPEED = 400.0
-"""Limit in sqrt(g d) where none is needed."""
-
-
 def speed_limit(phase: str, prepared: PreparedCase, settings: LiftingSettings) -> float:
     """Maximum speed of particles in a phase, in sqrt(g d)."""
     if phase == "fill":
         return settings.max_fill_speed
     if phase == "rest" or prepared.case.drum is not None:
-        return MAX_SPEED
+        return float("inf")
     # small particles that are squeezed out of the foot of the heap would be shot off the plate
     return float(np.sqrt(2.0 * prepared.fill_height / prepared.mean_diameter))
 
@@ -263,6 +259,7 @@ def lift_speed(prepared: PreparedCase) -> float:
     return prepared.case.test.lift_speed / Units.of(prepared).speed
 
 
+# The cross-section of 32 flat walls is 0.3 % larger than the circle's, their corners lie 0.5 % farther out.
 N_WALLS = 32
 
 

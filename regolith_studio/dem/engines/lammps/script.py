@@ -20,6 +20,7 @@ from regolith_studio.dataset.multisphere import (
 from regolith_studio.dem.case import PreparedCase, rayleigh_time
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.lifting_cylinder import SETTLE
 from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
@@ -135,9 +136,10 @@ def _ball() -> ClumpShape:
 
 
 TANGENTIAL_DAMPING = 1.0
+# By Hertz's law that of a contact that bears ten particles, about the column above the middle of a filling of
+# 1,000, at the largest modulus of the settings.
 TYPICAL_OVERLAP = 0.005
 """Mean diameters, where the two laws of damping are made equal."""
-SETTLE = 8.0
 
 
 @dataclass(frozen=True)
@@ -285,7 +287,7 @@ def script(
 atom_style hybrid sphere bond
 boundary s s f
 newton off
-comm_modify vel yes cutoff 4.0
+comm_modify vel yes
 read_data clumps.data
 neighbor 0.12 bin
 neigh_modify delay 0 every 1 check yes exclude molecule/intra all
