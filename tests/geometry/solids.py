@@ -69,3 +69,23 @@ def winding_numbers(mesh: Mesh, points: FloatArray) -> FloatArray:
         ab, bc, ca = (np.einsum("ij,ij->i", *pair) for pair in ((a, b), (b, c), (c, a)))
         total += 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)
     return np.asarray(total / (4.0 * np.pi))
+
+
+CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+FACES = np.concatenate([QUADS[:, [0, 1, 2]], QUADS[:, [0, 2, 3]]])
+CUBE = Mesh(CORNERS, FACES)
+
+
+def joined(*meshes):
+    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    return Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=False)]),
+    )
+
+
+def turned_round(mesh, rows=slice(None)):
+    faces = mesh.faces.copy()
+    faces[rows] = faces[rows, ::-1]
+    return Mesh(mesh.vertices, faces)

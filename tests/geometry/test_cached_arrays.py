@@ -1,7 +1,6 @@
 """What is measured of a mesh is kept, but not of hundreds."""
 
 import gc
-import sys
 import weakref
 
 import numpy as np
@@ -81,13 +80,8 @@ def test_that_a_callers_array_is_neither_locked_nor_shared():
     faces[0] = 0
     assert mesh.vertices[0, 0] != 7.0
     assert mesh.faces[0].max() > 0
+    with pytest.raises(ValueError, match="read-only"):
+        mesh.vertices[0] = 9.0
     window = np.zeros((4, 3))[:3]
     window.flags.writeable = False  # its owner can still write
     assert not np.shares_memory(Mesh(window, [[0, 1, 2]]).vertices, window)
-
-
-def test_that_a_count_of_references_stays_as_it_is():
-    (sphere,) = spheres(1)
-    before = sys.getrefcount(sphere)
-    sphere.face_areas  # noqa: B018
-    assert sys.getrefcount(sphere) == before

@@ -111,17 +111,6 @@ def test_that_a_full_disk_costs_the_cache_and_not_the_result(
     assert "No space left" in caplog.text
 
 
-def test_that_only_files_with_kernels_count(tmp_path: Path) -> None:
-    (tmp_path / "plain.py").write_text("x = 1")
-    before = kernels.kernel_sources(tmp_path)
-    kernels.kernel_sources.cache_clear()
-    (tmp_path / "plain.py").write_text("x = 2")
-    assert kernels.kernel_sources(tmp_path) == before
-    kernels.kernel_sources.cache_clear()
-    (tmp_path / "fast.py").write_text("@kernel")
-    assert kernels.kernel_sources(tmp_path) != before
-
-
 def test_that_another_checkout_or_date_has_code_of_its_own(tmp_path: Path) -> None:
     """Numba takes none of another: marks that it is there made the window compile without a word."""
     places = [tmp_path / "one", tmp_path / "two"]

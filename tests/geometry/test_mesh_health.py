@@ -8,26 +8,10 @@ import trimesh
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, inspect
-from regolith_studio.geometry.self_intersection import count_self_intersections, mark_crossings
+from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.geometry.topology import edge_table, find_bodies, genus, neighbours
-
-CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
-FACES = np.concatenate([QUADS[:, [0, 1, 2]], QUADS[:, [0, 2, 3]]])
-CUBE = Mesh(CORNERS, FACES)
-
-
-def joined(*meshes):
-    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-    return Mesh(
-        np.concatenate([mesh.vertices for mesh in meshes]),
-        np.concatenate([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=False)]),
-    )
-
-
-def turned_round(mesh):
-    return Mesh(mesh.vertices, mesh.faces[:, ::-1])
+from tests.geometry.solids import CUBE, joined, turned_round
 
 
 def grid_surface(n, m, place, twist=False):
@@ -220,14 +204,6 @@ def test_that_crossing_triangles_are_counted_as_a_plain_search_counts_them():
 
 def test_that_closed_convex_meshes_do_not_cross_themselves():
     assert count_self_intersections(icosphere(4).vertices, icosphere(4).faces) == 0
-
-
-def test_that_locked_and_other_arrays_of_faces_need_one_compiled_search():
-    ball = icosphere(2)
-    for faces in (ball.faces, ball.faces.copy()):
-        assert count_self_intersections(ball.vertices, faces) == 0
-    assert len({arguments[1] for arguments in mark_crossings.signatures}) == 1
-    assert inspect(torus()).self_intersections == 0
 
 
 def test_that_two_cubes_that_interpenetrate_cross():

@@ -14,30 +14,12 @@ from regolith_studio.geometry.repair import repair, wedge_neighbours
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.geometry.topology import edge_table, merged_vertices, neighbours
 from tests.filling import filled
-
-CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
-FACES = np.concatenate([QUADS[:, [0, 1, 2]], QUADS[:, [0, 2, 3]]])
-CUBE = Mesh(CORNERS, FACES)
-
-
-def joined(*meshes):
-    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-    return Mesh(
-        np.concatenate([mesh.vertices for mesh in meshes]),
-        np.concatenate([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=False)]),
-    )
+from tests.geometry.solids import CORNERS, CUBE, FACES, joined, turned_round
 
 
 def soup(mesh):
     """Every triangle with three vertices of its own."""
     return Mesh(mesh.triangles.reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3))
-
-
-def turned_round(mesh, rows=slice(None)):
-    faces = mesh.faces.copy()
-    faces[rows] = faces[rows, ::-1]
-    return Mesh(mesh.vertices, faces)
 
 
 def without(mesh, *rows):
@@ -120,10 +102,8 @@ def test_that_a_sound_mesh_comes_back_itself():
     assert result.mesh is CUBE
     assert result.actions == ()
     assert result.health_before is result.health_after
-
-
-def test_that_the_area_of_filled_holes_is_reported():
-    assert repair(without(CUBE, 0, 6).moved(scale=3)).filled_area == pytest.approx(9.0)
+    assert result.given is None
+    assert result.as_dict()["filled_area"] == 0.0
 
 
 def test_that_two_boxes_with_a_wall_between_them_become_one_box():
@@ -243,13 +223,6 @@ def test_that_a_repair_tells_the_mesh_as_it_came_and_what_was_done_in_numbers():
     assert told["actions"] == list(result.actions)
     filling = result.mesh.triangles[-result.filling_faces :]
     assert np.ptp(filling.reshape(-1, 3), axis=0).min() == pytest.approx(0.0, abs=1e-12)
-
-
-def test_that_a_sound_mesh_has_nothing_to_tell():
-    result = repair(Mesh(CORNERS, FACES))
-    assert result.given is None
-    assert result.as_dict()["actions"] == []
-    assert result.as_dict()["filled_area"] == 0.0
 
 
 NOTHING = {

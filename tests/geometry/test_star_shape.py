@@ -8,7 +8,6 @@ from regolith_studio.geometry.mesh_health import inspect, is_star_shaped
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
-from regolith_studio.geometry.topology import Connectivity
 
 BALL = icosphere(3)
 
@@ -78,17 +77,3 @@ def test_that_health_does_not_depend_on_place_and_size(scale, shift):
     assert health.sound
     assert health.self_intersections == 0
     assert not health.problems
-
-
-def test_that_what_is_remembered_of_faces_is_the_same_again_and_locked():
-    first = Connectivity.of(BALL.faces, len(BALL.vertices))
-    again = Connectivity.of(BALL.faces.copy(), len(BALL.vertices))
-    assert again is first
-    assert first.closed
-    assert first.agrees
-    assert first.parts.count == 1
-    with pytest.raises(ValueError, match="read-only"):
-        first.across[0] = 7
-    fewer = Connectivity.of(BALL.faces[1:], len(BALL.vertices))
-    assert not fewer.closed
-    assert fewer.table.open_edges == 3

@@ -139,16 +139,6 @@ def test_that_threads_that_ask_at_once_get_the_same_surface(rough):
         np.testing.assert_array_equal(vertices, surfaces[0])
 
 
-def test_that_harmonics_of_few_levels_are_held_and_made_again_alike(rough):
-    begun = reconstruct(rough(10), level=1)
-    for level in (2, 3, 4):
-        reconstruct(rough(10), level=level)
-    again = reconstruct(rough(10), level=1)
-    np.testing.assert_array_equal(again.vertices, begun.vertices)
-    assert synthesis.cached_harmonics.cache_info().currsize == synthesis.KEPT
-    assert synthesis._cached_middles.cache_info().currsize == synthesis.KEPT
-
-
 def test_that_shortfalls_are_those_of_chords_under_the_unit_circle():
     edges = icosphere_edges(2)
     sphere = icosphere(2)

@@ -3,7 +3,7 @@
 import io
 import struct
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -66,14 +66,15 @@ class Cube:
             "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
         ).encode()
 
-    def three_mf(self) -> bytes:
-        points = "".join('<vertex x="{:g}" y="{:g}" z="{:g}"/>'.format(*corner) for corner in CORNERS)
+    def three_mf(self, unit: str = "", scale: Sequence[float] = (1.0, 1.0, 1.0)) -> bytes:
+        points = "".join('<vertex x="{:g}" y="{:g}" z="{:g}"/>'.format(*corner) for corner in CORNERS * scale)
         faces = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*face) for face in TRIANGLES)
         model = f"<vertices>{points}</vertices><triangles>{faces}</triangles>"
         model = f'<resources><object id="1"><mesh>{model}</mesh></object></resources>'
+        head = f'<model unit="{unit}">' if unit else "<model>"
         data = io.BytesIO()
         with zipfile.ZipFile(data, "w") as archive:
-            archive.writestr("3D/3dmodel.model", f'<model>{model}<build><item objectid="1"/></build></model>')
+            archive.writestr("3D/3dmodel.model", f'{head}{model}<build><item objectid="1"/></build></model>')
         return data.getvalue()
 
     def files(self) -> dict[str, bytes]:

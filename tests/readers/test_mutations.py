@@ -1,7 +1,5 @@
 """Files with bytes changed at random: every parser gives triangles or one sentence, nothing else."""
 
-import json
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +11,7 @@ from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.topology import merged_vertices
 from regolith_studio.readers.sandbox.tasks import parse_mesh
 from tests.readers.mutations import check_sentence, mutated
+from tests.readers.test_gltf import glb, gltf
 
 NAMES = [
     "binary.stl",
@@ -29,25 +28,8 @@ NAMES = [
 
 
 def seeds(cube):
-    """The well-formed files, with a glTF made here and a 3MF."""
-    document = {
-        "asset": {"version": "2.0"},
-        "nodes": [{"mesh": 0, "scale": [1, 1, 2]}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}],
-        "buffers": [{"byteLength": 36, "uri": "data:;base64," + "AAAA" * 12}],
-    }
-    text = json.dumps({**document, "buffers": [{"byteLength": 36}]}).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", 36, b"BIN\0") + bytes(36)
-    binary = b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
-    return {
-        **cube.files(),
-        "cube.gltf": json.dumps(document).encode(),
-        "cube.3mf": cube.three_mf(),
-        "cube.glb": binary,
-    }
+    """The well-formed files, with glTF and 3MF."""
+    return {**cube.files(), "cube.gltf": gltf(), "cube.3mf": cube.three_mf(), "cube.glb": glb()}
 
 
 def nudged(data, rng):
@@ -71,21 +53,13 @@ def survives(name, data):
     return True
 
 
+@pytest.mark.parametrize(("count", "seed"), [(300, 11), pytest.param(40_000, 12, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", NAMES)
-def test_that_three_hundred_mutations_give_triangles_or_a_sentence(name, cube):
-    rng = np.random.default_rng(11)
+def test_that_mutations_give_triangles_or_a_sentence(name, count, seed, cube):
+    rng = np.random.default_rng(seed)
     data = seeds(cube)[name]
     assert survives(name, data)
-    for _ in range(300):
-        survives(name, mutated(data, rng))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_that_forty_thousand_mutations_give_triangles_or_a_sentence(name, cube):
-    rng = np.random.default_rng(12)
-    data = seeds(cube)[name]
-    for _ in range(40_000):
+    for _ in range(count):
         survives(name, mutated(data, rng))
 
 

@@ -187,7 +187,7 @@ def test_that_an_encoding_of_nrrd_is_named_before_the_byte_order(tmp_path):
         describe_volume(path)
 
 
-def ngff(path, axes, arrays, scales):
+def ngff(path, axes, arrays, scales, units=("micrometer",) * 3):
     """An OME-Zarr 0.4 of levels, each one chunk."""
     datasets = []
     for level, (array, scale) in enumerate(zip(arrays, scales, strict=True)):
@@ -199,7 +199,8 @@ def ngff(path, axes, arrays, scales):
         (path / str(level) / ".".join("0" for _ in shape)).write_bytes(array.astype("<u2").tobytes())
         transform = [{"type": "scale", "scale": scale}]
         datasets.append({"path": str(level), "coordinateTransformations": transform})
-    entries = [{"name": axis, **({"unit": "micrometer"} if axis.lower() in "xyz" else {})} for axis in axes]
+    spatial = iter(units)
+    entries = [{"name": axis, **({"unit": next(spatial)} if axis.lower() in "xyz" else {})} for axis in axes]
     image = {"version": "0.4", "axes": entries, "datasets": datasets}
     (path / ".zgroup").write_text('{"zarr_format": 2}')
     (path / ".zattrs").write_text(json.dumps({"multiscales": [image]}))

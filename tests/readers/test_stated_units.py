@@ -12,7 +12,7 @@ import tifffile
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.readers.volumes.read import describe_volume
-from tests.readers.test_three_mf import archive
+from tests.readers.test_stated_axes import ngff
 from tests.readers.test_unused_points import glb
 
 MICROMETRES = {
@@ -24,20 +24,9 @@ SIZE = np.array([2.0, 3.0, 4.0])
 VOXELS = np.arange(60, dtype=np.uint16).reshape(3, 4, 5)
 
 
-def three_mf(cube, unit):
-    points = "".join('<vertex x="{:g}" y="{:g}" z="{:g}"/>'.format(*p) for p in cube.vertices * SIZE)
-    faces = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*face) for face in cube.faces)
-    mesh = f"<mesh><vertices>{points}</vertices><triangles>{faces}</triangles></mesh>"
-    stated = f' unit="{unit}"' if unit else ""
-    return archive(
-        f'<model{stated}><resources><object id="1">{mesh}</object></resources>'
-        '<build><item objectid="1"/></build></model>'
-    )
-
-
 @pytest.mark.parametrize("unit", ["micron", "millimeter", "centimeter", "inch", "foot", "meter", ""])
 def test_that_3mf_comes_in_its_unit_or_in_millimetres(unit, cube, tmp_path):
-    (tmp_path / "box.3mf").write_bytes(three_mf(cube, unit))
+    (tmp_path / "box.3mf").write_bytes(cube.three_mf(unit, SIZE))
     particle = read_mesh(tmp_path / "box.3mf")
     edge = MICROMETRES[unit or "mm"]
     assert particle.mesh.bounds[1] == pytest.approx(SIZE * edge)
@@ -46,7 +35,7 @@ def test_that_3mf_comes_in_its_unit_or_in_millimetres(unit, cube, tmp_path):
 
 
 def test_that_a_unit_which_3mf_does_not_have_is_refused(cube, refusal):
-    assert "states the unit “furlong”" in refusal("box.3mf", three_mf(cube, "furlong"))
+    assert "states the unit “furlong”" in refusal("box.3mf", cube.three_mf("furlong", SIZE))
 
 
 def test_that_gltf_comes_in_metres_whatever_unit_is_asked(cube, tmp_path):
@@ -108,18 +97,7 @@ def nrrd_directions(path, units, edges):
 
 
 def ome_zarr(path, units, edges):
-    path = path.with_suffix(".zarr")
-    (path / "0").mkdir(parents=True)
-    axes = [{"name": a, "type": "space", "unit": u} for a, u in zip("zyx", units[::-1], strict=True)]
-    scale = [{"type": "scale", "scale": edges[::-1].tolist()}]
-    image = {"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": scale}]}
-    array = {"zarr_format": 2, "shape": [3, 4, 5], "chunks": [3, 4, 5], "dtype": "<u2", "compressor": None,
-             "fill_value": 0, "order": "C", "filters": None}  # fmt: skip
-    (path / ".zgroup").write_text('{"zarr_format": 2}')
-    (path / ".zattrs").write_text(json.dumps({"multiscales": [image]}))
-    (path / "0" / ".zarray").write_text(json.dumps(array))
-    (path / "0" / "0.0.0").write_bytes(VOXELS.astype("<u2").tobytes())
-    return path
+    return ngff(path.with_suffix(".zarr"), "zyx", [VOXELS], [edges[::-1].tolist()], units[::-1])
 
 
 def metaimage(path, units, edges):

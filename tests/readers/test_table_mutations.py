@@ -161,16 +161,9 @@ def survive(name: str, count: int, seed: int, folder: Path) -> SimpleNamespace:
     return said
 
 
+@pytest.mark.parametrize(("count", "seed"), [(200, 41), pytest.param(40_000, 42, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", CASES)
-def test_that_two_hundred_mutations_give_values_or_a_sentence(name: str, folder: Path) -> None:
-    assert survive(name, 200, 41, folder).refused > 0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
-def test_that_forty_thousand_mutations_of_each_reader_give_values_or_a_sentence(
-    name: str, folder: Path
-) -> None:
-    """The kinds of file of one reader share them."""
-    count = 40_000 // sum(reader is CASES[name] for reader in CASES.values())
-    assert survive(name, count, 42, folder).refused > 0
+def test_that_mutations_give_values_or_a_sentence(name: str, count: int, seed: int, folder: Path) -> None:
+    """The kinds of file of one reader share the many."""
+    shared = sum(reader is CASES[name] for reader in CASES.values()) if count > 200 else 1
+    assert survive(name, count // shared, seed, folder).refused > 0

@@ -8,6 +8,8 @@ import pytest
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.readers.particles import read_mesh
+from tests.readers import test_gltf
+from tests.readers.test_gltf import DOCUMENT, changed
 
 BOX = (2.0, 3.0, 4.0)
 STRAY = (1e6, -1e6, 5.0)
@@ -34,21 +36,18 @@ def with_a_stray(name, cube):
 
 
 def glb(body, n_points, n_corners):
+    """The GLB of test_gltf with other points and triangles, whose indices have 32 bits."""
     corners = 12 * n_points
-    text = (
-        '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],'
-        '"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],'
-        f'"buffers":[{{"byteLength":{len(body)}}}],"bufferViews":['
-        f'{{"buffer":0,"byteOffset":0,"byteLength":{corners}}},'
-        f'{{"buffer":0,"byteOffset":{corners},"byteLength":{len(body) - corners}}}],"accessors":['
-        f'{{"bufferView":0,"componentType":5126,"count":{n_points},"type":"VEC3"}},'
-        f'{{"bufferView":1,"componentType":5125,"count":{n_corners},"type":"SCALAR"}}]}}'
-    ).encode()
-    text += b" " * (-len(text) % 4)
-    parts = (
-        struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(body), 0x004E4942) + body
-    )
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(parts)) + parts
+    accessors = [
+        {**DOCUMENT["accessors"][0], "count": n_points},
+        {**DOCUMENT["accessors"][1], "componentType": 5125, "count": n_corners},
+    ]
+    views = [
+        {"buffer": 0, "byteLength": corners},
+        {"buffer": 0, "byteOffset": corners, "byteLength": len(body) - corners},
+    ]
+    document = changed(accessors=accessors, bufferViews=views, buffers=[{"byteLength": len(body)}])
+    return test_gltf.glb(document, body)
 
 
 @pytest.mark.parametrize("name", ["box.obj", "box.off", "box.ply", "box.glb"])

@@ -140,20 +140,15 @@ def folder() -> Iterator[Path]:
         yield made
 
 
+@pytest.mark.parametrize(("count", "seed"), [(400, 21), pytest.param(40_000, 23, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", OWN)
-def test_that_four_hundred_mutations_give_voxels_or_a_sentence(name, folder) -> None:
-    run_own(name, 400, 21, folder / name)
+def test_that_mutations_give_voxels_or_a_sentence(name, count, seed, folder) -> None:
+    run_own(name, count, seed, folder / name)
 
 
 @pytest.mark.parametrize("name", LIBRARIES)
 def test_that_forty_mutations_of_library_formats_give_voxels_or_a_sentence(name, folder) -> None:
     assert run_sandboxed(name, 40, 22, folder / name) <= 2
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", OWN)
-def test_that_forty_thousand_mutations_give_voxels_or_a_sentence(name, folder) -> None:
-    run_own(name, 40_000, 23, folder / name)
 
 
 @pytest.mark.slow
