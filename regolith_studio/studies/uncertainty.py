@@ -211,49 +211,52 @@ class AngleBudget:
     @property
     def filling_variance(self) -> float:
         """Of the mean, by the seeds of the filling."""
+        return self._filling[0]
+
+    @cached_property
+    def _filling(self) -> tuple[float, float]:
+        """Variance of the mean and its degrees of freedom, by the heaps of all levels that scatter alike."""
         piles = self.nominal[np.isfinite(self.nominal)]
-        return float(piles.var(ddof=1) / len(piles)) if len(piles) > 1 else np.nan
+        if len(piles) < 2:
+            return np.nan, np.nan
+        fit = self._pool[1]
+        variance, freedom = (piles.var(ddof=1), len(piles) - 1.0) if fit is None else fit.of_a_heap
+        return float(variance / len(piles)), float(freedom)
+
+    @cached_property
+    def _pairs(self) -> dict[tuple[ChainStep, str], FloatArray]:
+        """Angles of the present settings and of each level for the seeds that have both, if two or more."""
+        pairs = {}
+        for step in self.steps:
+            for level in step.levels[1:]:
+                both = np.column_stack([self.nominal, self.changed[step.key, level]])
+                both = both[np.isfinite(both).all(axis=1)]
+                if len(both) > 1:
+                    pairs[step, level] = both
+        return pairs
+
+    @cached_property
+    def _pool(self) -> "tuple[list[tuple[ChainStep, str]], _BlockFit | None]":
+        """Levels whose heaps scatter like those of the present settings, and all of these heaps together."""
+        rows = [row for row, pairs in self._pairs.items() if _has_own_noise(row[0], pairs)]
+        angles = np.array([self.nominal, *(self.changed[step.key, level] for step, level in rows)])
+        scattered = _scattered_rows(angles) if rows else set()
+        kept = [k for k in range(1, len(angles)) if k not in scattered]
+        if 0 in scattered or not kept:
+            return [], None
+        return [rows[k - 1] for k in kept], _BlockFit.of(angles[[0, *kept]])
 
     @cached_property
     def effects(self) -> tuple[AngleEffect, ...]:
         """Of the levels with two pairs of heaps or more."""
-        rows = {}
-        for step in self.steps:
-            for level in step.levels[1:]:
-                pairs = np.column_stack([self.nominal, self.changed[step.key, level]])
-                pairs = pairs[np.isfinite(pairs).all(axis=1)]
-                if len(pairs) > 1:
-                    rows[step, level] = pairs
-        pooled = self._pooled_effects([row for row, pairs in rows.items() if _has_own_noise(row[0], pairs)])
+        rows, fit = self._pool
         effects = []
-        for (step, level), pairs in rows.items():
-            effect = _added_spread if step.key == RESAMPLED else _difference
-            effects.append(pooled.get((step, level)) or effect(step, level, pairs))
+        for (step, level), pairs in self._pairs.items():
+            if fit is not None and (step, level) in rows:
+                effects.append(fit.effect(rows.index((step, level)), step, level, len(pairs)))
+            else:
+                effects.append((_added_spread if step.key == RESAMPLED else _difference)(step, level, pairs))
         return tuple(effects)
-
-    def _pooled_effects(self, rows: list[tuple[ChainStep, str]]) -> dict[tuple[ChainStep, str], AngleEffect]:
-        """Of those of these levels whose heaps scatter like all, with the scatter of all.
-
-        A heap has the effect of its level, that of its seed and noise (a randomised block design). The
-        changes are those of least squares, so that they need not have the same seeds; with one level they
-        are Student's paired differences.
-        """
-        angles = np.array([self.nominal, *(self.changed[step.key, level] for step, level in rows)])
-        scattered = _scattered_rows(angles)
-        kept = [k for k in range(1, len(angles)) if k not in scattered]
-        if 0 in scattered or not kept:
-            return {}
-        fit = _BlockFit.of(angles[[0, *kept]])
-        effects = {}
-        for k, change, factor in zip(kept, fit.changes.tolist(), fit.factors.tolist(), strict=True):
-            n = int((np.isfinite(self.nominal) & np.isfinite(angles[k])).sum())
-
-            def half(count: int, factor: float = factor, n: int = n) -> float:
-                quantile = _student(fit.freedom + len(kept) * (count - n))
-                return float(quantile * np.sqrt(fit.variance * factor * n / count))
-
-            effects[rows[k - 1]] = _effect(*rows[k - 1], change, n, half)
-        return effects
 
     def step_variances(self, with_undecided: bool = False) -> dict[str, float]:
         """By key: of equally probable levels, or of the bootstrap; undecided changes are 0, or far ends."""
@@ -282,27 +285,52 @@ class AngleBudget:
         return self._half_width(self.filling_variance + sum(self.step_variances(True).values()))
 
     def _half_width(self, variance: float) -> float:
-        n = int(np.isfinite(self.nominal).sum())
-        return float(_student(n - 1) * variance**0.5) if n > 1 else np.nan
+        return float(_student(self._filling[1]) * variance**0.5)
 
 
 @dataclass(frozen=True, eq=False)
 class _BlockFit:
     """Least squares of angles by level (rows, the present one first) and seed; NaN where there is no heap.
 
-    - ``changes``: of the other levels from the first; ``factors``: their variances over that of a heap.
+    A heap has the effect of its level, that of its seed and noise: a randomised block design. With one other
+    level the change is Student's paired difference.
+
+    - ``changes``: of the other levels from the first; ``factors``: their variances over that of the noise.
     - ``squares``, ``freedom``: sum of the squared residuals, and its degrees of freedom.
+    - ``by_seed``: by how much the sum is larger without effects of the seeds; ``seeds``, ``heaps``: numbers.
     """
 
     changes: FloatArray
     factors: FloatArray
     squares: float
     freedom: int
+    by_seed: float
+    seeds: int
+    heaps: int
 
     @property
     def variance(self) -> float:
-        """Of a heap about the effects of its level and seed."""
+        """Of the noise."""
         return self.squares / self.freedom
+
+    @property
+    def of_a_heap(self) -> tuple[float, float]:
+        """Variance of a heap of a level by seed and noise, and its degrees of freedom (Satterthwaite)."""
+        # The mean square by seed holds the noise, and so often the variance of the seeds.
+        times = (self.heaps - len(self.changes) - 1) / (self.seeds - 1)
+        parts = np.array([self.by_seed / (self.seeds - 1) / times, self.variance * (1 - 1 / times)])
+        shares = parts**2 / (self.seeds - 1, self.freedom)
+        whole = float(parts.sum())
+        return whole, whole**2 / float(shares.sum()) if whole > 0.0 else self.seeds - 1.0
+
+    def effect(self, k: int, step: ChainStep, level: str, n: int) -> AngleEffect:
+        """Of the other level of number `k`, with `n` pairs."""
+
+        def half(count: int) -> float:
+            quantile = _student(self.freedom + len(self.changes) * (count - n))
+            return float(quantile * np.sqrt(self.variance * self.factors[k] * n / count))
+
+        return _effect(step, level, float(self.changes[k]), n, half)
 
     @classmethod
     def of(cls, angles: FloatArray) -> "_BlockFit":
@@ -314,7 +342,10 @@ class _BlockFit:
         effects = inverse @ (design.T @ known)
         freedom = len(known) - int(np.linalg.matrix_rank(design))
         squares = float(((known - design @ effects) ** 2).sum())
-        return cls(effects[:n], np.diag(inverse)[:n], squares, freedom)
+        levels = angles[np.isfinite(angles).any(axis=1)]
+        without = float(np.nansum((levels - np.nanmean(levels, axis=1, keepdims=True)) ** 2))
+        seeds = len(np.unique(seed))
+        return cls(effects[:n], np.diag(inverse)[:n], squares, freedom, without - squares, seeds, len(known))
 
 
 def _scattered_rows(angles: FloatArray) -> set[int]:
@@ -333,7 +364,7 @@ def _scattered_rows(angles: FloatArray) -> set[int]:
     return scattered
 
 
-def _student(freedom: int) -> float:
+def _student(freedom: float) -> float:
     """Half width of an interval in standard deviations."""
     return float(stdtrit(freedom, (1 + CONFIDENCE) / 2))
 

@@ -85,7 +85,7 @@ def test_that_a_difference_is_decided_as_by_a_paired_t_test() -> None:
     assert not small.decided
     assert 36 <= (small.heaps_needed or 0) <= 44  # (1.96 + a little) * .32 / .1 squared
     budget = angle_budget(nominal, {"large": changed["large"]})
-    assert budget.variance == pytest.approx(nominal.var(ddof=1) / 8 + large.change**2 / 4)
+    assert budget.variance == pytest.approx(budget.filling_variance + large.change**2 / 4)
     undecided = angle_budget(nominal, {"small": changed["small"]})
     assert undecided.step_variances()["small"] == 0.0
     assert undecided.half_width_with_undecided > undecided.half_width
@@ -100,15 +100,20 @@ def test_that_intervals_of_three_heaps_in_eight_steps_hold_the_change_as_often_a
     missing: float, scatter: float, low: float, high: float
 ) -> None:
     """Levels that change nothing; a heap has the effect of its seed and noise of 1."""
-    rng, held, halves = np.random.default_rng(3), [], []
+    rng, held, halves, values = np.random.default_rng(3), [], [], []
     for _ in range(250):
         noise = rng.standard_normal((9, 3)) * np.array([1.0] * 8 + [scatter])[:, None]
         angles = 30.0 + rng.standard_normal(3) + noise
         angles[rng.random(angles.shape) < missing] = np.nan
-        for each in angle_budget(angles[0], {str(k): angles[k] for k in range(1, 9)}).effects:
+        budget = angle_budget(angles[0], {str(k): angles[k] for k in range(1, 9)})
+        for each in budget.effects:
             held.append(each.low <= 0.0 <= each.high)
             halves.append(each.high - each.change)
+        if np.isfinite(budget.half_width):
+            known = budget.filling_variance**0.5 * budget.half_width / budget.variance**0.5
+            values.append(abs(budget.value - 30.0) <= known)
     assert low <= np.mean(held) <= high
+    assert 0.92 <= np.mean(values) <= 0.98
     assert np.median(halves) < 2.2  # Student's of three pairs alone: 4.30 sqrt(2 / 3) 0.83 = 2.9
 
 
