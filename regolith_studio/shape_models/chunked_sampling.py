@@ -61,16 +61,10 @@ class ChunkedSampler(ABC):
 
     @abstractmethod
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """The chunks of :meth:`draw`, in order.
-
-        Raises InputError if `n` is negative, the range is none, or hardly any draw is acceptable.
-        """
+        """The chunks of :meth:`draw`, in order."""
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Realizations:
-        """`n` particles, in the range of equivalent radii if given.
-
-        Raises InputError as :meth:`draw_chunks`, or if the particles need more memory than there is.
-        """
+        """`n` particles, in the range of equivalent radii if given."""
         check_draws(n, self.l_max)
         chunks = list(self.draw_chunks(n, seed, size_range))
         # No particles, but with the unit and the degree of the model.
@@ -91,10 +85,7 @@ class SizedSampler(ChunkedSampler):
             """Law of equivalent radii."""
 
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
-
-        Raises InputError if `n` is negative or the range is none.
-        """
+        """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given."""
         bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             # A chunk is drawn whole and cut afterwards, or a shorter draw would use other random numbers.
@@ -143,10 +134,7 @@ class RejectionSampler(ChunkedSampler):
         """Coefficients of `n` draws, and the component of each in a last column."""
 
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles with a positive radius, and in the range of equivalent radii if given.
-
-        Raises InputError if `n` is negative, the range is none, or hardly any draw is acceptable.
-        """
+        """`n` particles with a positive radius, and in the range of equivalent radii if given."""
         bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             rows, rejected = accepted(

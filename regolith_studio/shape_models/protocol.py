@@ -107,7 +107,11 @@ class ShapeModel(Protocol):
     Settings: type[Any]
 
     def fit(self, sample: Sample, settings: Any | None = None) -> FittedModel:
-        """The model of a sample, with the settings or the default ones."""
+        """The model of a sample, with the settings or the default ones.
+
+        Raises InputError if a setting is out of range, the sample is not expanded so far, or too few of its
+        particles can be used.
+        """
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> FittedModel:
         """The fitted model from what it stored."""

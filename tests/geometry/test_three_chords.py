@@ -31,14 +31,14 @@ def test_that_a_regular_tetrahedron_has_two_edges_and_their_distance() -> None:
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_that_no_chord_between_surface_points_is_longer(seed: int) -> None:
-    """Chords of 3,000 random surface points, those within half a degree of perpendicular for the width."""
+    """Chords of 2,000 random surface points, those within half a degree of perpendicular for the width."""
     solid = random_polyhedron(seed, n_facets=14, stretch=0.5)
     length, width, thickness = length_width_thickness(solid.hull)
     generator = np.random.default_rng(seed)
     triangles = solid.triangles[
-        generator.choice(len(solid.faces), 3000, p=solid.face_areas / solid.surface_area)
+        generator.choice(len(solid.faces), 2000, p=solid.face_areas / solid.surface_area)
     ]
-    points = np.einsum("nk,nkx->nx", generator.dirichlet([1, 1, 1], 3000), triangles)
+    points = np.einsum("nk,nkx->nx", generator.dirichlet([1, 1, 1], 2000), triangles)
     vertices = solid.vertices
     distances = cdist(vertices, vertices)
     first, second = np.unravel_index(int(distances.argmax()), distances.shape)

@@ -41,10 +41,7 @@ class _Document:
 
 
 def parse(data: bytes, path: Path) -> ParsedMesh:
-    """All triangles of the scene in its coordinates; points, lines, materials and motion are left out.
-
-    Raises FileError if the file is broken, compressed, or refers to a file outside its folder.
-    """
+    """All triangles of the scene in its coordinates; points, lines, materials and motion are left out."""
     try:
         document = _document(data, path)
         parts = _parts(document)

@@ -16,10 +16,7 @@ _KNOWN = frozenset(
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """Vertices and triangulated faces of all groups.
-
-    Raises FileError if there are no vertices or faces, or a line cannot be understood.
-    """
+    """Vertices and triangulated faces of all groups."""
     if b"\0" in data[:4096]:
         raise FileError("is not an OBJ: it holds binary data.")
     rows = [line.split() for line in data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()]

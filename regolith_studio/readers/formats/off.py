@@ -16,10 +16,7 @@ _COMMENT = re.compile(rb"#[^\r\n]*")
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """Vertices and triangulated faces; colours, normals and texture coordinates are ignored.
-
-    Raises FileError if counts, coordinates or indices are missing or invalid.
-    """
+    """Vertices and triangulated faces; colours, normals and texture coordinates are ignored."""
     text = _COMMENT.sub(b"", data)
     keyword = _KEYWORD.match(text)
     kind = keyword[1].decode() if keyword else "OFF"

@@ -330,10 +330,7 @@ _CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """Vertices and triangulated faces; colours, normals and texture coordinates are ignored.
-
-    Raises FileError if the header or a row is broken, or an index points nowhere.
-    """
+    """Vertices and triangulated faces; colours, normals and texture coordinates are ignored."""
     header = read_header(data)
     tables, notes = _binary_tables(data, header) if header.encoding else _ascii_tables(data, header)
     vertices = _vertices(tables)

@@ -22,8 +22,6 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
     """Triangles of an STL file: three new vertices a facet.
 
     The stated normals are ignored: the order of the corners is more reliable.
-
-    Raises FileError if the file is neither a whole binary nor a well-formed ASCII STL.
     """
     if not data:
         raise FileError("is empty: it has no bytes at all.")

@@ -30,10 +30,7 @@ _Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """All triangles of the built objects, in the file's unit.
-
-    Raises FileError if the archive or its model is broken, or unpacks to something far too large.
-    """
+    """All triangles of the built objects, in the file's unit."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             package = _Package(archive)

@@ -22,11 +22,7 @@ _LENGTHS = {
 
 
 def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
-    """Positions of the last time step in the unit of its style; scaled ones are put into their box.
-
-    Raises FileError if the dump is cut short, has no columns of positions, or its box is tilted and they are
-    scaled.
-    """
+    """Positions of the last time step in the unit of its style; scaled ones are put into their box."""
     start, steps = data.rfind(b"ITEM: TIMESTEP"), data.count(b"ITEM: TIMESTEP")
     if start < 0:
         raise FileError("is not a LAMMPS dump: it has no ITEM: TIMESTEP.")

@@ -25,8 +25,6 @@ def parse(data: bytes, asked: tuple[str, ...]) -> ParsedPositions:
     """Positions of the columns named x, y and z, or of the only three; the size of one named so.
 
     Without names a fourth column is the diameter, which a note says.
-
-    Raises FileError if the text is no table, or what its columns are is not known.
     """
     table = number_rows(data, with_units=True)
     if asked:

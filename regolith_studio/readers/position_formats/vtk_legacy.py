@@ -24,10 +24,7 @@ _POINT_DATA = re.compile(rb"^POINT_DATA[ \t]+(\d{1,12})", re.MULTILINE | re.IGNO
 
 
 def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
-    """Points, and the scalars of theirs that are named diameter or radius.
-
-    Raises FileError if the file is cut short, or of another kind.
-    """
+    """Points, and the scalars of theirs that are named diameter or radius."""
     head = data[:1024].splitlines()
     if len(head) < 3 or not head[0].startswith(b"# vtk DataFile"):
         raise FileError("is not a legacy VTK file: its first line lacks the identifier.")

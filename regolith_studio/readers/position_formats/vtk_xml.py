@@ -23,10 +23,7 @@ MAX_ARRAY_BYTES = 1 << 31
 
 
 def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
-    """Points of all pieces, and their point data that is named diameter or radius.
-
-    Raises FileError if the file is cut short, packed in another way, or of another kind.
-    """
+    """Points of all pieces, and their point data that is named diameter or radius."""
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
         raise FileError("defines entities of its own, which no VTK file needs.")
     appended = _APPENDED.search(data)

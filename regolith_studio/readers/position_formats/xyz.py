@@ -29,11 +29,7 @@ _WITH_SPECIES = {4: ("species", "x", "y", "z"), 7: ("species", "x", "y", "z", "v
 
 
 def parse(data: bytes, asked: tuple[str, ...]) -> ParsedPositions:
-    """Positions of the last frame.
-
-    Raises FileError if a frame is cut short, its rows are no positions, or what its columns are is not
-    known.
-    """
+    """Positions of the last frame."""
     lines = utf8_text(data).splitlines()
     place = frames = 0
     last: tuple[int, int] = (0, 0)

@@ -113,10 +113,7 @@ class TextStream(InflatedStream):
 
 
 def open_amira(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
-    """The first field of a uniform lattice.
-
-    Raises FileError if the header breaks the rules, or the lattice or the encoding is another one.
-    """
+    """The first field of a uniform lattice."""
     with path.open("rb") as file:
         head = file.read(MAX_HEADER_BYTES)
     text = head.decode("latin-1")

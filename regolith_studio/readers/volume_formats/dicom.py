@@ -324,11 +324,7 @@ class DicomVoxels:
 
 
 def open_dicom(path: Path, options: Mapping[str, Any]) -> DicomVoxels:
-    """The series ``options["dataset"]`` of a folder, by default the longest, or that of the file given.
-
-    Raises FileError if a file is broken or packed, or the slices are of several sizes or do not lie at equal
-    distances.
-    """
+    """The series ``options["dataset"]`` of a folder, by default the longest, or that of the file given."""
     folder = path if path.is_dir() else path.parent
     names = [str(name) for name in options.get("names") or dicom_names(folder)]
     series, others = _series(folder, names)

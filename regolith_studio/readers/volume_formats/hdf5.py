@@ -477,10 +477,7 @@ class Hdf5Voxels:
 
 
 def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
-    """The volume ``options["dataset"]`` of a file, by default the likeliest, with its ``options["axes"]``.
-
-    Raises FileError if the file is broken, holds no volume, or its voxels lie in other files.
-    """
+    """The volume ``options["dataset"]`` of a file, by default the likeliest, with its ``options["axes"]``."""
     import h5py
 
     file: Any = None

@@ -41,10 +41,7 @@ _TRUE = ("true", "t", "1", "yes")
 
 
 def open_metaimage(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
-    """An image of three dimensions with one channel.
-
-    Raises FileError if the header breaks the rules or the data lie elsewhere.
-    """
+    """An image of three dimensions with one channel."""
     with path.open("rb") as file:
         fields, body = _fields(file.read(MAX_HEADER_BYTES))
     stored = _stored_type(fields)

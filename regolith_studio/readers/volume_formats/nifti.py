@@ -84,10 +84,7 @@ class ScaledVoxels:
 
 
 def open_nifti(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
-    """A three-dimensional image of one file.
-
-    Raises FileError if the header breaks the rules, holds colours, or its voxels are in a second file.
-    """
+    """A three-dimensional image of one file."""
     with path.open("rb") as file:
         packed = file.read(2) == _GZIP
     order, fields = _fields(_head(path, packed))

@@ -21,10 +21,7 @@ _HEADERS: dict[tuple[int, int], Any] = {(1, 0): npy.read_array_header_1_0, (2, 0
 
 
 def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | TransposedVoxels:
-    """A three-dimensional array whose first index counts the slices, or with the axes ``options["axes"]``.
-
-    Raises FileError if the header is broken, the array holds objects or has another number of dimensions.
-    """
+    """A three-dimensional array whose first index counts the slices, or with the axes ``options["axes"]``."""
     with path.open("rb") as file, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # numpy's, about files that Python 2 wrote
         try:

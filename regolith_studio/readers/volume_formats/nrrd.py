@@ -54,10 +54,7 @@ _LEFT_HANDED = ("left-anterior-superior", "las", "3d-left-handed")
 
 
 def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
-    """A three-dimensional array of plain numbers.
-
-    Raises FileError if the header breaks the rules, the encoding is another one, or the data lie elsewhere.
-    """
+    """A three-dimensional array of plain numbers."""
     with path.open("rb") as file:
         head = file.read(MAX_HEADER_BYTES)
     fields, body = _fields(head)

@@ -117,11 +117,7 @@ class ZarrVoxels:
 
 
 def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:
-    """The level ``options["dataset"]`` of an image, by default the finest.
-
-    Raises FileError if the metadata break the rules, a codec is not among those that are read, or there is
-    no volume.
-    """
+    """The level ``options["dataset"]`` of an image, by default the finest."""
     attributes = _attributes(path)
     image = _image(attributes)
     axes, units = _axes(image)

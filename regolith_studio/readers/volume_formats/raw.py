@@ -18,8 +18,6 @@ SUFFIXES = (".raw", ".vol", ".bin", ".dat")
 def open_raw(path: Path, options: Mapping[str, Any]) -> PlainVoxels:
     """The voxels of a file that ``options["raw"]`` describes: shape (nx, ny, nz), dtype, offset,
     or that a scanner's header beside it describes.
-
-    Raises FileError if there is no layout, or the file has not just the bytes that it needs.
     """
     given = options.get("raw")
     if given is None:

@@ -10,10 +10,7 @@ from regolith_studio.readers.voxels.stored import PlainVoxels
 
 
 def open_scanner(path: Path, _options: Mapping[str, Any]) -> PlainVoxels:
-    """The voxels that the header describes.
-
-    Raises FileError if the header breaks the rules, or the voxels are elsewhere or of another number.
-    """
+    """The voxels that the header describes."""
     return open_described(path)
 
 

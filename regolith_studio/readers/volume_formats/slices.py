@@ -67,10 +67,7 @@ class SliceFiles:
 
 
 def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
-    """The series ``options["dataset"]`` among the files ``options["names"]``, by default the longest.
-
-    Raises FileError if there is none, slices are missing and not allowed to, or the first cannot be read.
-    """
+    """The series ``options["dataset"]`` among the files ``options["names"]``, by default the longest."""
     series, _ = slice_series(map(str, options.get("names") or ()))
     if not series:
         raise FileError(

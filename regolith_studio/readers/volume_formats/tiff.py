@@ -64,10 +64,7 @@ class TiffPages:
 
 
 def open_tiff(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
-    """A stack of pages of one size and type.
-
-    Raises FileError if the file is broken, holds colours, or its pages are no stack.
-    """
+    """A stack of pages of one size and type."""
     file = open_tiff_file(path)
     try:
         return _stack(path, file)

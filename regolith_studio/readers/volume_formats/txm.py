@@ -71,10 +71,7 @@ class TxmVoxels:
 
 
 def open_txm(path: Path, _options: Mapping[str, Any]) -> TxmVoxels:
-    """The slices of a reconstruction.
-
-    Raises FileError if the file holds projections, or its streams are not those of a TXM.
-    """
+    """The slices of a reconstruction."""
     if path.suffix.lower() == ".txrm":
         raise FileError("holds projections, not a volume: reconstruct it and open the TXM file.")
     file = path.open("rb")

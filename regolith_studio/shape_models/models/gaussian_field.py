@@ -96,10 +96,7 @@ class GaussianRadiusModel:
     Settings = GaussianFieldSettings
 
     def fit(self, sample: Sample, settings: GaussianFieldSettings | None = None) -> GaussianField:
-        """The field of a sample; the mean of c_lm for l >= 1 is zero by the model and not subtracted.
-
-        Raises InputError if the sample is not expanded to the settings' l_max.
-        """
+        """The field of a sample; the mean of c_lm for l >= 1 is zero by the model and not subtracted."""
         rows = sample.truncated((settings or GaussianFieldSettings()).l_max).coefficients
         l_max = round(rows.shape[1] ** 0.5) - 1
         sums = np.add.reduceat((rows**2).mean(axis=0), np.arange(l_max + 1) ** 2)

@@ -329,11 +329,7 @@ class GaussianMixtureModel:
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> GaussianMixture:
-        """The mixture of a sample.
-
-        Raises InputError if there are fewer than four particles for each component, or the sample is not
-        expanded so far.
-        """
+        """The mixture of a sample."""
         chosen = settings or MixtureSettings()
         rows = sample.truncated(chosen.l_max).coefficients
         # The lowest deviation of a component is a share of the mean.

@@ -481,11 +481,7 @@ class HullFieldModel:
     Settings = HullFieldSettings
 
     def fit(self, sample: Sample, settings: HullFieldSettings | None = None) -> HullField:
-        """The field of a sample.
-
-        Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
-        particles have a positive radius.
-        """
+        """The field of a sample."""
         chosen = settings or HullFieldSettings(min(DEGREES[1], sample.l_max))
         if chosen.size_law not in SIZE_LAWS:
             raise InputError(f"The size law must be one of {', '.join(SIZE_LAWS)}, got {chosen.size_law!r}.")

@@ -146,11 +146,7 @@ class LogFieldModel:
     Settings = LogFieldSettings
 
     def fit(self, sample: Sample, settings: LogFieldSettings | None = None) -> LogField:
-        """The field of a sample.
-
-        Raises InputError if a setting is unknown, the sample is not expanded so far, or fewer than two
-        particles have a positive radius.
-        """
+        """The field of a sample."""
         chosen = settings or LogFieldSettings()
         if chosen.spectrum not in SPECTRA:
             raise InputError(f"The spectrum must be one of {', '.join(SPECTRA)}, got {chosen.spectrum!r}.")

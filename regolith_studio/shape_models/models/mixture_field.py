@@ -86,11 +86,7 @@ class MixtureFieldModel:
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> MixtureField:
-        """The mixture of a sample.
-
-        Raises InputError if there are fewer than four particles for each component, the sample is not
-        expanded so far, or fewer than two particles have a positive radius.
-        """
+        """The mixture of a sample."""
         chosen = settings or MixtureSettings()
         shapes = log_shapes(sample.truncated(chosen.l_max))
         logs, powers = np.log(shapes.equivalent_radii), shapes.powers

@@ -349,11 +349,7 @@ class RecombinedModel:
     Settings = RecombinedSettings
 
     def fit(self, sample: Sample, settings: RecombinedSettings | None = None) -> Recombined:
-        """The model of a sample.
-
-        Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
-        particles have a positive radius.
-        """
+        """The model of a sample."""
         chosen = settings or RecombinedSettings(min(30, sample.l_max))
         if chosen.n_candidates < 1:
             raise InputError(f"The surfaces tried must be at least 1, got {chosen.n_candidates}.")

@@ -164,11 +164,7 @@ class SampleMatchedModel:
     Settings = SampleMatchedSettings
 
     def fit(self, sample: Sample, settings: SampleMatchedSettings | None = None) -> SampleMatched:
-        """The model of a sample; better the more degrees above the settings' l_max the sample has.
-
-        Raises InputError if a setting is out of range, the sample is not expanded so far, or fewer than two
-        particles have a positive radius.
-        """
+        """The model of a sample; better the more degrees above the settings' l_max the sample has."""
         chosen = settings or SampleMatchedSettings(min(30, sample.l_max))
         if not 0 <= chosen.turn <= 2:
             raise InputError(f"The turn must be 0 to 2 radians, got {chosen.turn:g}.")
