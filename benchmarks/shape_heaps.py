@@ -5,8 +5,8 @@
 The twelve shipped particles; by default 20 seeds, 1,000 particles, all shapes (names of cases with commas
 between; after @ stands another friction than 0.8), Rapier, one heap at a time. Datasets and heaps that are in
 the folder RUNS already are kept. RESULT has a row a heap, and the differences of :data:`QUESTIONS` on the
-same seeds: number of pairs, mean, ends of Student's interval of 95 %, and how many pairs would decide one
-whose interval holds 0, if it is as large as it seems.
+same seeds, with the scatter of the heaps of all cases: number of pairs, difference, ends of its interval of
+95 %, and how many pairs would decide one whose interval holds 0, if it is as large as it seems.
 """
 
 import json
@@ -116,12 +116,14 @@ def differences(heaps: Sequence[dict[str, Any]]) -> dict[str, list[float | int |
         case = heap["coarsening"] + (f"@{friction}" if friction != FRICTION else "")
         angle = heap["angle_deg"]
         angles.setdefault(case, {})[heap["seed"]] = np.nan if angle is None else angle
+    seeds = sorted(set().union(*angles.values()))
+    table = {case: np.array([of.get(seed, np.nan) for seed in seeds]) for case, of in angles.items()}
     rows: dict[str, list[float | int | None]] = {}
     for question, (changed, base) in QUESTIONS.items():
-        seeds = sorted(set(angles.get(changed, ())) & set(angles.get(base, ())))
-        pair = [np.array([angles[case][seed] for seed in seeds]) for case in (base, changed)]
-        step = ChainStep(question, "", (base, changed))
-        for found in AngleBudget((step,), pair[0], {(question, changed): pair[1]}).effects:
+        step = ChainStep(question, "", (base, *(case for case in table if case != base)))
+        if {changed, base} <= set(table):
+            budget = AngleBudget((step,), table[base], {(question, case): table[case] for case in table})
+            found = next(effect for effect in budget.effects if effect.level == changed)
             numbers = [round(each, 2) for each in (found.change, found.low, found.high)]
             rows[question] = [found.n, *numbers, found.heaps_needed]
     return rows
