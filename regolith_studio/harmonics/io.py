@@ -18,6 +18,11 @@ from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 from regolith_studio.harmonics.radius_function import Ellipsoid
 
 FORMAT = "regolith-studio fit"
+_STATED = (
+    *("hidden_surface_share", "unrepresentable_volume_share", "radial_error", "largest_radial_error"),
+    *("rule", "sampling_degree"),
+)
+"""Fields of a fit that its document states as they are."""
 SYMMETRY_TOLERANCE = 1e-4
 """Largest violation of a_{l,-m} = (-1)^m conj(a_lm), as a share of the largest coefficient."""
 
@@ -74,12 +79,7 @@ def _entry(name: str, fit: HarmonicFit) -> dict[str, Any]:
         "name": name,
         "star_point": fit.star_point.tolist(),
         "mean_radius": fit.coefficients.mean_radius,
-        "hidden_surface_share": fit.hidden_surface_share,
-        "unrepresentable_volume_share": fit.unrepresentable_volume_share,
-        "radial_error": fit.radial_error,
-        "largest_radial_error": fit.largest_radial_error,
-        "rule": fit.rule,
-        "sampling_degree": fit.sampling_degree,
+        **{field: getattr(fit, field) for field in _STATED},
         "reference": None
         if ellipsoid is None
         else {"axes": ellipsoid.axes.tolist(), "semi_axes": ellipsoid.semi_axes.tolist()},
@@ -92,14 +92,9 @@ def _fit(entry: Mapping[str, Any], row: NDArray[Any], point: NDArray[Any]) -> Ha
     return HarmonicFit(
         ShCoefficients(row),
         point,
-        hidden_surface_share=entry["hidden_surface_share"],
-        unrepresentable_volume_share=entry["unrepresentable_volume_share"],
-        radial_error=entry["radial_error"],
-        largest_radial_error=entry["largest_radial_error"],
         reference=None if given is None else Ellipsoid(given["axes"], given["semi_axes"]),
-        rule=entry["rule"],
-        sampling_degree=entry["sampling_degree"],
         notes=tuple(entry["notes"]),
+        **{field: entry[field] for field in _STATED},
     )
 
 

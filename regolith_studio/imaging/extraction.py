@@ -123,14 +123,10 @@ class Extraction:
 
 
 def extract_particles(
-    volume: Volume,
-    settings: ExtractionSettings | None = None,
-    group: str = "",
-    source: Source | None = None,
-    grey: Volume | None = None,
+    volume: Volume, settings: ExtractionSettings | None = None, grey: Volume | None = None
 ) -> Extraction:
     """Run :func:`extraction_steps` to its end."""
-    steps = extraction_steps(volume, settings, group, source, grey=grey)
+    steps = extraction_steps(volume, settings, grey=grey)
     while True:
         try:
             next(steps)

@@ -171,15 +171,15 @@ def read_archive(path: Path, what: str) -> dict[str, bytes]:
             return {name: archive.read(name) for name in archive.namelist()}
 
 
-def read_json(path: Path, largest: int = MAX_JSON_BYTES) -> Any:
+def read_json(path: Path) -> Any:
     """A JSON document, as :func:`~regolith_studio.io.own_files.parse_strict_json` reads it.
 
-    Raises FileError if it cannot be read, is larger than that many bytes, or is no strict JSON in UTF-8.
+    Raises FileError if it cannot be read, is too large, or is no strict JSON in UTF-8.
     """
     check_regular(path)
     try:
-        if path.stat().st_size > largest:
-            raise FileError(f"{path} is larger than {largest // 1_000_000} MB.")
+        if path.stat().st_size > MAX_JSON_BYTES:
+            raise FileError(f"{path} is larger than {MAX_JSON_BYTES // 1_000_000} MB.")
         return parse_strict_json(path.read_text("utf-8"), str(path))
     except OSError as error:
         raise FileError(f"{path} cannot be read: {os_error_reason(error)}.") from error

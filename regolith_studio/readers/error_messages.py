@@ -1,6 +1,10 @@
 """Error messages about files: one printable sentence of limited length."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from regolith_studio.errors import FileError
 
 MAX_NAME_LENGTH = 80
 MAX_MESSAGE_LENGTH = 240
@@ -35,3 +39,23 @@ def message_about(path: Path, predicate: str) -> str:
     if len(sentence) <= MAX_MESSAGE_LENGTH:
         return sentence
     return f"{sentence[: MAX_MESSAGE_LENGTH - 2]}…."
+
+
+@contextmanager
+def about_file(path: Path) -> Iterator[None]:
+    """Put the file's name before what a FileError says of it."""
+    try:
+        yield
+    except FileError as error:
+        raise FileError(message_about(path, str(error))) from None
+
+
+@contextmanager
+def any_fault(sentence: str) -> Iterator[None]:
+    """Let any error of a library stand for a damaged file: parsers and codecs raise errors of many kinds."""
+    try:
+        yield
+    except (FileError, MemoryError):
+        raise
+    except Exception:  # noqa: BLE001
+        raise FileError(sentence) from None

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError
 from regolith_studio.io.triangles import used_vertices
 from regolith_studio.messages import N_, Message, to_json
-from regolith_studio.readers.error_messages import message_about, plural, printable
+from regolith_studio.readers.error_messages import about_file, plural, printable
 from regolith_studio.readers.formats import MESH_FORMATS, MeshFormat, ParsedMesh, mesh_suffixes
 from regolith_studio.readers.number_rows import named_columns, number_rows
 from regolith_studio.readers.position_formats import (
@@ -52,22 +52,18 @@ def read_mesh_file(request: dict[str, Any]) -> SandboxMessage:
 def list_archive(request: dict[str, Any]) -> SandboxMessage:
     """Names and places of the meshes and archives in an archive."""
     path = Path(request["path"])
-    try:
+    with about_file(path):
         names, places, refused = listed_members(
             Path(request["archive"]), request["chain"], request["suffixes"]
         )
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
     text = "\0".join(names).encode("utf-8", "replace")
     rows = np.array(places, dtype="<u8").reshape(-1, len(Place._fields))
     return SandboxMessage({"refused": refused}, (np.frombuffer(text, dtype=np.uint8), rows))
 
 
 def _member_bytes(request: dict[str, Any], path: Path) -> bytes:
-    try:
+    with about_file(path):
         return member_bytes(Path(request["archive"]), request["chain"])
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
 
 
 def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
@@ -77,14 +73,12 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
 
     Raises FileError with a whole sentence that names the file.
     """
-    try:
+    with about_file(path):
         data = without_byte_order_mark(data)
         row, notes = _mesh_format_of(data, path)
         with np.errstate(all="ignore"):
             parsed = row.parse(data, path)
             return _checked_mesh(replace(parsed, notes=notes + parsed.notes)), row
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
 
 
 def without_byte_order_mark(data: bytes) -> bytes:
@@ -157,10 +151,8 @@ def _unused_note(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tup
 def read_named_columns(request: dict[str, Any]) -> SandboxMessage:
     """Columns of descriptors in the table at ``request["path"]``."""
     path = Path(request["path"])
-    try:
+    with about_file(path):
         found = named_columns(path.read_bytes())
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
     header = {"keys": found.keys, "units": found.units, "notes": found.notes}
     return SandboxMessage(header, found.values)
 
@@ -187,11 +179,9 @@ def read_number_rows(request: dict[str, Any]) -> SandboxMessage:
     """The rows of the text at ``request["path"]`` below at most ``request["headers"]`` lines of header."""
     path = Path(request["path"])
     data = path.read_bytes()
-    try:
+    with about_file(path):
         headers = int(request.get("headers", 1))
         table = number_rows(without_byte_order_mark(data), headers, numeric_headers=headers)
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
     return SandboxMessage(
         {"names": table.names, "commas": table.separator == ","},
         (np.ascontiguousarray(table.numbers, "<f8"),),
@@ -207,7 +197,7 @@ def parse_positions(
 
     Raises FileError with a whole sentence that names the file.
     """
-    try:
+    with about_file(path):
         if not data:
             raise FileError("is empty: it has no bytes at all.")
         data = without_byte_order_mark(data)
@@ -216,8 +206,6 @@ def parse_positions(
             if columns and not row.takes_names:
                 raise FileError(f"is {row.label}, which names its columns itself; leave the names out.")
             return _checked_positions(row.parse(data, columns)), row
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
 
 
 def _position_format_of(data: bytes, path: Path) -> PositionFormat:
@@ -272,33 +260,27 @@ _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
 def prepare_volume(request: dict[str, Any]) -> SandboxMessage:
     """Import what the format of the file needs; the only step that may take long on a small file."""
     path = Path(request["path"])
-    try:
+    with about_file(path):
         row, _ = volume_format_of(path)
         row.prepare()
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
     return SandboxMessage({"format": row.key})
 
 
 def open_volume(request: dict[str, Any]) -> SandboxMessage:
     """The header of the volume that the request names, which stays open for `read_slices`."""
     path = Path(request["path"])
-    try:
+    with about_file(path):
         volume, row = _open_one(request)
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
     return SandboxMessage(_as_json(volume, row, volume_format_of(path)[1]))
 
 
 def read_slices(request: dict[str, Any]) -> SandboxMessage:
     """Slices ``request["z0"]`` to ``request["z1"]``, shape (z1 - z0, ny, nx)."""
     path = Path(request["path"])
-    try:
+    with about_file(path):
         volume, _ = _open_one(request)
         z0, z1 = int(request["z0"]), int(request["z1"])
         voxels = read_checked_slices(volume, z0, z1)
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
     return SandboxMessage({}, (_little(voxels),))
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.messages import N_, Message, count_message
-from regolith_studio.readers.error_messages import display_name, printable
+from regolith_studio.readers.error_messages import any_fault, display_name, printable
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     DatasetEntry,
@@ -229,14 +229,10 @@ def _numbers(items: list[Any], tag: str, count: int) -> NDArray[np.float64] | No
 def _parsed(path: Path, **options: Any) -> Any:
     import pydicom
 
-    try:
+    with any_fault(f"holds {display_name(path)}, which is a broken DICOM file; copy it again."):
         if not is_dicom(path):
             raise FileError(f"holds {display_name(path)}, which does not begin as DICOM; copy it again.")
         return pydicom.dcmread(path, **options)
-    except (FileError, MemoryError):
-        raise
-    except Exception:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
-        raise FileError(f"holds {display_name(path)}, which is a broken DICOM file; copy it again.") from None
 
 
 def pixels_of(frames: Sequence[DicomFrame]) -> Iterator[NDArray[Any]]:
@@ -279,17 +275,11 @@ def _unpacked(path: Path, frames: list[DicomFrame]) -> Iterator[NDArray[Any]]:
 
     rows, columns, stored = frames[0].layout
     decoder = "pydicom" if frames[0].packed else ""
-    try:
+    with any_fault(f"is damaged: the pixels of {display_name(path)} are not those that its header states."):
         wanted = [each.frame for each in frames]
         unpacked = list(pydicom.iter_pixels(path, raw=True, indices=wanted, decoding_plugin=decoder))
         if len(unpacked) != len(frames) or any(each.shape != (rows, columns) for each in unpacked):
             raise ValueError("other frames")
-    except MemoryError:
-        raise
-    except Exception:  # noqa: BLE001 (whatever a decoder trips over is the file's fault)
-        raise FileError(
-            f"is damaged: the pixels of {display_name(path)} are not those that its header states."
-        ) from None
     yield from (each.astype(np.dtype(stored).newbyteorder("="), copy=False) for each in unpacked)
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.messages import N_, Message
-from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.error_messages import any_fault, printable
 from regolith_studio.readers.settings import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
@@ -87,15 +87,11 @@ class ZarrVoxels:
         first = z0 // self.layer * self.layer
         stop = min(first + self.layer, self.header.shape[0])
         n_bytes = (stop - first) * self.header.slice_bytes
-        try:
+        with any_fault(f"is damaged: its slices {z0 + 1} to {z1} cannot be unpacked."):
             if z1 <= stop and z1 - z0 < stop - first and n_bytes <= MAX_CACHED_BYTES:
                 part = self._layer_from(first, stop)[z0 - first : z1 - first]
             else:
                 part = self._unpacked(z0, z1)
-        except (FileError, MemoryError):
-            raise
-        except Exception:  # noqa: BLE001 (each codec has errors of its own)
-            raise FileError(f"is damaged: its slices {z0 + 1} to {z1} cannot be unpacked.") from None
         return np.ascontiguousarray(part, dtype=self.header.dtype)
 
     def close(self) -> None:
@@ -325,12 +321,8 @@ def _opened(path: Path, level: _Level) -> Any:
                 _check_link(self.root, key)
             return await super().get_partial_values(prototype, ranges)
 
-    try:
+    with any_fault("is a broken Zarr: its metadata are invalid; export it again."):
         array = zarr.open_array(LinkedStore(path, read_only=True), path=level.path, mode="r")
-    except (FileError, MemoryError):
-        raise
-    except Exception:  # noqa: BLE001 (invalid metadata raise errors of many kinds)
-        raise FileError("is a broken Zarr: its metadata are invalid; export it again.") from None
     if array.shape != level.shape or array.dtype.newbyteorder("=") != level.dtype.newbyteorder("="):
         raise FileError("is a broken Zarr: its metadata contradict each other; export it again.")
     return array

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.messages import N_, Message
+from regolith_studio.readers.error_messages import any_fault
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     OpenVolume,
@@ -47,15 +48,9 @@ class TiffPages:
         return out
 
     def _decoded(self, page: Any, number: int) -> NDArray[Any]:
-        try:
+        with any_fault(f"is damaged: the pixels of page {number + 1:,} cannot be decoded; export it again."):
             check_page(page, self._file.filehandle.size, number)
             decoded: NDArray[Any] = page.asarray(maxworkers=1)
-        except (FileError, MemoryError):
-            raise
-        except Exception:  # noqa: BLE001 (each codec has errors of its own)
-            raise FileError(
-                f"is damaged: the pixels of page {number + 1:,} cannot be decoded; export it again."
-            ) from None
         return decoded
 
     def close(self) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.error_messages import any_fault
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import VoxelHeader, sizes_or_none, three_dimensions, voxel_type
 
@@ -126,19 +127,13 @@ def _compound_file(file: BinaryIO) -> Any:
 
     sizes = file.read(34)[30:]
     file.seek(0)
-    try:
+    with any_fault("is a broken TXM: its table or folders are invalid, or it is cut short; copy it again."):
         if sizes not in _SECTOR_SIZES:
             raise ValueError("sectors of a size that no file has")
         compound = CompoundFile(file)
         if compound.num_mini_fat_sectors > compound.nb_sect or compound.root.size > compound.nb_sect << 12:
             raise ValueError("more small streams than the file can hold")
         return compound
-    except MemoryError:
-        raise
-    except Exception:  # noqa: BLE001 (broken tables and folders raise errors of many kinds)
-        raise FileError(
-            "is a broken TXM: its table or its folders are invalid, or it is cut short; copy it again."
-        ) from None
 
 
 def _entry(compound: Any, folder: str, name: str) -> Any:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.file_names import natural_key
-from regolith_studio.readers.error_messages import display_name, message_about
+from regolith_studio.readers.error_messages import about_file, display_name
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 from regolith_studio.readers.voxels.slice_series import (
@@ -50,10 +50,8 @@ def member_names(path: Path) -> tuple[str, ...]:
     """
     if not path.is_dir():
         return dicom_names(path.parent) if path.is_file() and is_dicom(path) else ()
-    try:
+    with about_file(path):
         return zarr_names(path) if is_zarr(path) else dicom_names(path) or slice_names(path)
-    except FileError as error:
-        raise FileError(message_about(path, str(error))) from None
 
 
 def member_folder(path: Path) -> Path:

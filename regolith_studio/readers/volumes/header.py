@@ -86,9 +86,9 @@ class VolumeHeader:
     bytes: int
     notes: tuple[str, ...] = ()
 
-    def micrometres(self, voxel_size: VoxelSize | None = None, unit: str | None = None) -> Sizes:
+    def micrometres(self) -> Sizes:
         """Edges of a voxel along x, y and z in micrometres, see `voxel_size_in_micrometres`."""
-        return voxel_size_in_micrometres(self.path, self, voxel_size, unit)
+        return voxel_size_in_micrometres(self.path, self, None, None)
 
 
 def voxel_size_in_micrometres(
