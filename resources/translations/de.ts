@@ -800,12 +800,12 @@
         <translation>Hintergrund</translation>
     </message>
     <message>
-        <source>Before the lift</source>
-        <translation>Vor dem Heben</translation>
-    </message>
-    <message>
         <source>Before the repair:</source>
         <translation>Vor der Reparatur:</translation>
+    </message>
+    <message>
+        <source>Before the run</source>
+        <translation>Vor dem Lauf</translation>
     </message>
     <message>
         <source>Best so far.</source>

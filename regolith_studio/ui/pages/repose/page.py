@@ -382,7 +382,7 @@ class ReposePage(PageWidget):
         self.player.set_scene(*scene)
         self.player.show_moment(
             pile,
-            tr("Before the lift") if len(pile) else tr("Shown once the run begins"),
+            tr("Before the run") if len(pile) else tr("Shown once the run begins"),
             tr(
                 "{count:,} particles of the dataset “{name}”",
                 count=len(prepared),
