@@ -16,7 +16,7 @@ class MeasuredLine:
     """One measured line.
 
     - ``key``, ``what``: what is measured, for programs and in words.
-    - ``value``, ``unit``: what was found; ``None`` where nothing could be measured.
+    - ``value``, ``unit``: the measured value; ``None`` where nothing could be measured.
     - ``band``: where the value passes, in words.
     - ``passed``: whether it lies there.
     - ``note``: what else the value needs to be understood.

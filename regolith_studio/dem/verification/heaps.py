@@ -32,8 +32,8 @@ from regolith_studio.dem.verification.bodies import polyhedra_dataset
 N_PARTICLES, SEEDS = 500, (0, 1, 2, 3, 4)
 AFTER_REST = 100.0
 """Time for which a settled heap is watched, in sqrt(d/g)."""
-MEDIAN_WAY, MOST_WAY, MOST = 1e-3, 1e-2, 0.9
-"""Largest displacement of half and of nine in ten particles, in mean diameters."""
+MAX_MEDIAN, MAX_QUANTILE, QUANTILE = 1e-3, 1e-2, 0.9
+"""Maximum of the median displacement and of a quantile of it in mean diameters, and that quantile."""
 DEEP, DEEPEST, MAX_DEEP_SHARE = 0.02, 0.05, 0.01
 """Depth of a contact in mean diameters above which it is deep, depth that none has, and share of the deep."""
 EARTH, MOON = GRAVITIES["Earth"], GRAVITIES["Moon"]
@@ -55,7 +55,7 @@ class LiftedHeap:
 
     run: LiftingRun
     filled: EngineState
-    ending: SimulationResult
+    result: SimulationResult
 
 
 @dataclass(eq=False)
@@ -83,24 +83,24 @@ def settled_heap(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
         step = run.solver.time_step()
         run.solver.advance(step, max(1, round(0.5 / step)))
         yield
-    ways = np.linalg.norm(run.solver.points - before, axis=1)
-    half, most = float(np.median(ways)), float(np.quantile(ways, MOST))
+    displacements = np.linalg.norm(run.solver.points - before, axis=1)
+    median, quantile = float(np.median(displacements)), float(np.quantile(displacements, QUANTILE))
     return MeasuredLine(
         key="rest",
         what="Median displacement in a settled heap of 500 during 100 √(d/g)",
-        value=half,
+        value=median,
         unit="d",
-        band=f"at most {MEDIAN_WAY:g} d, and 90 % within {MOST_WAY:g} d",
-        passed=half <= MEDIAN_WAY and most <= MOST_WAY,
-        note=f"90 % within {most:.2g} d",
+        band=f"at most {MAX_MEDIAN:g} d, and 90 % within {MAX_QUANTILE:g} d",
+        passed=median <= MAX_MEDIAN and quantile <= MAX_QUANTILE,
+        note=f"90 % within {quantile:.2g} d",
     )
 
 
 @timed
 def contacts(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
-    """How deep the polyhedra of a heap at rest overlap, by separating axes and not by the engine's word."""
+    """How deep the polyhedra of a heap at rest overlap, by separating axes, not as the engine reports it."""
     prepared = heap_case(0)
-    heap = (yield from runs.lifted()).ending.particles
+    heap = (yield from runs.lifted()).result.particles
     depths = overlap_depths(prepared, heap) / prepared.mean_diameter
     deep, deepest = float((depths > DEEP).mean()) if len(depths) else 0.0, float(depths.max(initial=0.0))
     return MeasuredLine(
@@ -117,7 +117,7 @@ def contacts(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
 @timed
 def repeats(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """Whether one and two threads, and the same seed again, give the same heap to the last byte."""
-    heaps = [(yield from runs.lifted()).ending.particles]
+    heaps = [(yield from runs.lifted()).result.particles]
     for threads in (2, 1):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / SNAPSHOTS).mkdir()
@@ -178,7 +178,7 @@ def _with_half_step(engine: VerifiableEngine, heap: LiftedHeap) -> Generator[Non
     finer = replace(usual, time_step=usual.time_step / 2)
     again = LiftingRun(prepared, finer, engine.solver(prepared, finer))
     other = yield from _turns(resume_lifting(again, heap.filled))
-    return _angle(heap.ending), _angle(other)
+    return _angle(heap.result), _angle(other)
 
 
 def _lifted(engine: VerifiableEngine, seed: int) -> Generator[None, None, LiftedHeap]:
@@ -199,18 +199,18 @@ def _turns(steps: Generator[Any, None, Any]) -> Generator[None, None, Any]:
         yield
 
 
-def _angle(ending: SimulationResult) -> float:
+def _angle(result: SimulationResult) -> float:
     """Angle of repose in degrees; not a number of what is no heap."""
     try:
-        return measure_repose(ending.particles.points, ending.particles.diameters).angle
+        return measure_repose(result.particles.points, result.particles.diameters).angle
     except NotAPileError:
         return float("nan")
 
 
 def _paired_line(key: str, what: str, pairs: Sequence[AnglePair]) -> MeasuredLine:
     """The mean difference of pairs of angles with Student's interval; it passes if that contains zero."""
-    known = np.array([pair for pair in pairs if np.isfinite(pair).all()]).reshape(-1, 2)
-    differences = known[:, 1] - known[:, 0]
+    measured = np.array([pair for pair in pairs if np.isfinite(pair).all()]).reshape(-1, 2)
+    differences = measured[:, 1] - measured[:, 0]
     n = len(differences)
     mean, half, note = None, 0.0, f"{n} heaps with an angle are too few"
     if n >= 2:
