@@ -60,18 +60,31 @@ class LiftedHeap:
 
 @dataclass(eq=False)
 class HeapRuns:
-    """Heaps of one engine with its usual settings; the first is simulated once for all lines that need it."""
+    """Heaps of one engine with its usual settings, each simulated once for all lines that need it."""
 
     engine: VerifiableEngine
     further_pairs: Callable[[], Generator[None, None, list[AnglePair]]] | None = None
     """:func:`step_pair` of all seeds after the first, where other processes compute them."""
     first: LiftedHeap | None = None
+    known_pairs: list[AnglePair] | None = None
 
     def lifted(self) -> Generator[None, None, LiftedHeap]:
         """The heap of the first seed."""
         if self.first is None:
             self.first = yield from _lifted(self.engine, SEEDS[0])
         return self.first
+
+    def pairs(self) -> Generator[None, None, list[AnglePair]]:
+        """:func:`step_pair` of all seeds."""
+        if self.known_pairs is None:
+            pairs = [(yield from _with_half_step(self.engine, (yield from self.lifted())))]
+            if self.further_pairs is not None:
+                pairs += yield from self.further_pairs()
+            else:
+                for seed in SEEDS[1:]:
+                    pairs.append((yield from step_pair(self.engine, seed)))
+            self.known_pairs = pairs
+        return self.known_pairs
 
 
 @timed
@@ -137,32 +150,21 @@ def repeats(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
 @timed
 def half_step(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle with half the time step, of the same filling."""
-    pairs = [(yield from _with_half_step(runs.engine, (yield from runs.lifted())))]
-    if runs.further_pairs is not None:
-        pairs += yield from runs.further_pairs()
-    else:
-        for seed in SEEDS[1:]:
-            pairs.append((yield from step_pair(runs.engine, seed)))
-    return _paired_line(
-        "half_step", "Change of the angle of repose with half the time step, same fillings", pairs
-    )
+    what = "Change of the angle of repose with half the time step, same fillings"
+    return _paired_line("half_step", what, (yield from runs.pairs()))
 
 
 @timed
 def gravities(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle under the gravity of the Moon against that of the Earth, with one step in seconds."""
     pairs = []
-    engine = runs.engine
-    usual = engine.Settings()
+    usual = runs.engine.Settings()
     # Settings are in sqrt(d/g), which is longer on the Moon.
     shorter = replace(usual, time_step=usual.time_step * (MOON / EARTH) ** 0.5)
-    for seed in SEEDS:
-        angles = []
-        for gravity, settings in ((EARTH, usual), (MOON, shorter)):
-            prepared = heap_case(seed, gravity)
-            run = LiftingRun(prepared, settings, engine.solver(prepared, settings))
-            angles.append(_angle((yield from _turns(simulate_lifting(run)))))
-        pairs.append((angles[0], angles[1]))
+    for seed, (on_earth, _) in zip(SEEDS, (yield from runs.pairs()), strict=True):
+        prepared = heap_case(seed, MOON)
+        run = LiftingRun(prepared, shorter, runs.engine.solver(prepared, shorter))
+        pairs.append((on_earth, _angle((yield from _turns(simulate_lifting(run))))))
     return _paired_line(
         "gravity", "Change of the angle of repose from 9.81 to 1.62 m/s², with one time step", pairs
     )
