@@ -211,17 +211,15 @@ class AngleBudget:
     @property
     def filling_variance(self) -> float:
         """Of the mean, by the seeds of the filling."""
-        return self._filling[0]
+        return float(self._of_a_heap[0] / max(np.isfinite(self.nominal).sum(), 1))
 
     @cached_property
-    def _filling(self) -> tuple[float, float]:
-        """Variance of the mean and its degrees of freedom, by the heaps of all levels that scatter alike."""
-        piles = self.nominal[np.isfinite(self.nominal)]
+    def _of_a_heap(self) -> tuple[float, float]:
+        """Variance of a heap and its degrees of freedom, by the heaps of all levels that scatter alike."""
+        piles, fit = self.nominal[np.isfinite(self.nominal)], self._pool[1]
         if len(piles) < 2:
             return np.nan, np.nan
-        fit = self._pool[1]
-        variance, freedom = (piles.var(ddof=1), len(piles) - 1.0) if fit is None else fit.of_a_heap
-        return float(variance / len(piles)), float(freedom)
+        return (float(piles.var(ddof=1)), len(piles) - 1.0) if fit is None else fit.of_a_heap
 
     @cached_property
     def _pairs(self) -> dict[tuple[ChainStep, str], FloatArray]:
@@ -254,8 +252,10 @@ class AngleBudget:
         for (step, level), pairs in self._pairs.items():
             if fit is not None and (step, level) in rows:
                 effects.append(fit.effect(rows.index((step, level)), step, level, len(pairs)))
+            elif step.key == RESAMPLED:
+                effects.append(_added_spread(step, level, self.changed[step.key, level], *self._of_a_heap))
             else:
-                effects.append((_added_spread if step.key == RESAMPLED else _difference)(step, level, pairs))
+                effects.append(_difference(step, level, pairs))
         return tuple(effects)
 
     def step_variances(self, with_undecided: bool = False) -> dict[str, float]:
@@ -285,7 +285,7 @@ class AngleBudget:
         return self._half_width(self.filling_variance + sum(self.step_variances(True).values()))
 
     def _half_width(self, variance: float) -> float:
-        return float(_student(self._filling[1]) * variance**0.5)
+        return float(_student(self._of_a_heap[1]) * variance**0.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,20 +392,24 @@ def _effect(step: ChainStep, level: str, change: float, n: int, half: Callable[[
     return AngleEffect(step, level, change, change - half(n), change + half(n), n, decided, needed)
 
 
-def _added_spread(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect:
-    """Standard deviation that another sample of grains in each heap adds, by the ratio of variances."""
-    n, (same, other) = len(pairs), pairs.var(axis=0, ddof=1).tolist()
+def _added_spread(
+    step: ChainStep, level: str, angles: FloatArray, same: float, freedom: float
+) -> AngleEffect:
+    """Standard deviation that another sample of grains in each heap adds, by the ratio of variances.
+
+    ``same``, ``freedom``: variance of heaps of the same grains, and its degrees of freedom.
+    """
+    piles = angles[np.isfinite(angles)]
+    n, other = len(piles), float(piles.var(ddof=1))
     ends = (1 + CONFIDENCE) / 2, (1 - CONFIDENCE) / 2
     ratio = other / same if same > 0.0 else np.inf
 
-    def added(quantile: float, count: int) -> float:
-        return float(np.sqrt(max(other / fdtri(count - 1, count - 1, quantile) - same, 0.0)))
+    def quotient(quantile: float, count: int) -> float:
+        return float(fdtri(count - 1, freedom * count / n, quantile))
 
-    low, high = (added(end, n) for end in ends)
+    low, high = (float(np.sqrt(max(other / quotient(end, n) - same, 0.0))) for end in ends)
     decided = low > 0.0
-    needed = None
-    if not decided:
-        needed = _first(lambda count: ratio > fdtri(count - 1, count - 1, ends[0]), n)
+    needed = None if decided else _first(lambda count: ratio > quotient(ends[0], count), n)
     return AngleEffect(step, level, float(np.sqrt(max(other - same, 0.0))), low, high, n, decided, needed)
 
 
