@@ -381,6 +381,8 @@ def start(words: "list[str]") -> int:
     folder = str(ROOT) if testing else str(Path.cwd())
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if testing:  # else each process, and each child of theirs, compiles all sources once more
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
     if draws_in_memory(words):
         with virtual_display() as display:
             environment.pop("WAYLAND_DISPLAY", None)

@@ -110,6 +110,7 @@ def test_that_words_go_through_to_the_program_and_blas_gets_one_thread(
     monkeypatch.chdir(user)
     monkeypatch.setattr(bootstrap, "draws_in_memory", lambda _words: False)
     monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     if threads:
         monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
 
@@ -117,6 +118,7 @@ def test_that_words_go_through_to_the_program_and_blas_gets_one_thread(
         assert path == command[0] == str(bootstrap.venv_python())
         assert command[1:] == module
         assert environment["OPENBLAS_NUM_THREADS"] == (threads or "1")
+        assert ("PYTHONDONTWRITEBYTECODE" in environment) == (words[:1] != ["test"])
         assert Path.cwd() == (checkout if folder == "checkout" else user)
         raise Replaced
 

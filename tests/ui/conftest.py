@@ -33,6 +33,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.startup import make_application, open_window
 from regolith_studio.ui.translation import install_translators, remove_translators
+from regolith_studio.ui.views.image_view import ImageView
 from regolith_studio.ui.widgets.formula import all_outlines
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -168,7 +169,13 @@ def preferences(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def sample_window(shown, preferences, settled):
+def pictures_on_request(monkeypatch):
+    """Let 3-D views in images draw when a test asks for a picture only: each drawing takes 70 ms."""
+    monkeypatch.setattr(ImageView, "paintEvent", lambda _view, _event: None)
+
+
+@pytest.fixture
+def sample_window(shown, preferences, settled, pictures_on_request):  # noqa: ARG001
     """Opens a window on the sample; its first polyhedron is there when it is returned."""
 
     def run(width=1100, height=720):
@@ -188,7 +195,7 @@ def window(sample_window):
 
 
 @pytest.fixture
-def page_of(shown, preferences):
+def page_of(shown, preferences, pictures_on_request):  # noqa: ARG001
     """Builds a page alone, over a session of its own whose jobs run at once where it is given none."""
     ends = []
 

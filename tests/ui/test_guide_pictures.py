@@ -30,6 +30,11 @@ DOINGS = {
 
 
 @pytest.fixture
+def pictures_on_request():
+    """The guide shows what views draw."""
+
+
+@pytest.fixture
 def window(sample_window, preferences):
     preferences.window["theme"] = "light"
     return sample_window(1480, 900)
