@@ -10,10 +10,10 @@ A block of a chapter names a file of ``benchmarks/results`` and holds Markdown w
 
 A line with ``>*`` stands for one line for each key there, which ``*`` is replaced by.
 
-A field is a path of keys. A step such as ``engine=mujoco;seed=1`` selects the records of a list, a key of a
-list of records is the list of their values, ``:5`` its first five. A list becomes one cell each,
-with ``mean`` its mean and half the width of Student's interval of 95 %, with ``range`` its ends, with
-``pairs`` one cell for each two numbers, joined by ±.
+A field is a path of keys. A step such as ``engine=mujoco;seed=1`` selects the records of a list, keys of a
+list of records such as ``low,high`` are the list of their values, ``:5`` its first five, ``1:4`` its second to
+fourth. A list becomes one cell each, with ``mean`` its mean and half the width of Student's interval of 95 %,
+with ``range`` its ends, with ``pairs`` one cell for each two numbers, joined by ±.
 """
 
 import json
@@ -92,13 +92,13 @@ def _below(value: Any, step: str) -> Any:
         return value[step]
     if step.isdigit():
         return value[int(step)]
-    if step.startswith(":"):
-        return value[: int(step[1:])]
+    if ":" in step:
+        return value[slice(*(int(end) if end else None for end in step.split(":")))]
     if "=" in step:
         target = dict(each.split("=") for each in step.split(";"))
         found = [row for row in value if all(str(row[key]) == text for key, text in target.items())]
     else:
-        found = [row[step] for row in value]
+        found = [row[key] for row in value for key in step.split(",")]
     if not found:
         raise KeyError(step)
     return found
