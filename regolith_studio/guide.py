@@ -11,9 +11,9 @@ A block of a chapter names a file of ``benchmarks/results`` and holds Markdown w
 A line with ``>*`` stands for one line for each key there, which ``*`` is replaced by.
 
 A field is a path of keys. A step such as ``engine=mujoco;seed=1`` selects the records of a list, keys of a
-list of records such as ``low,high`` are the list of their values, ``:5`` its first five, ``1:4`` its second to
-fourth. A list becomes one cell each, with ``mean`` its mean and half the width of Student's interval of 95 %,
-with ``range`` its ends, with ``pairs`` one cell for each two numbers, joined by ±.
+list of records such as ``low,high`` are the list of their values, ``:5`` its first five, ``1:4`` its second
+to fourth. A list becomes one cell each, with ``mean`` its mean and half the width of Student's interval of
+95 %, with ``range`` its ends, with ``pairs`` one cell for each two numbers, joined by ±.
 """
 
 import json
