@@ -12,8 +12,7 @@ import numpy as np
 
 from benchmarks.populations import measured, realized, sample_from
 from benchmarks.result_files import Rows, add_result, show_row
-from regolith_studio.dataset.quality import quality_curve
-from regolith_studio.dataset.representatives import NEEDED, sampling_noise
+from regolith_studio.dataset.representatives import NEEDED, quality_curve, sampling_noise
 
 PARTS, CHOICES = (10, 60, 150, 600), 20
 COUNTS = (1, 5, 10, 20, 70, 200)

@@ -16,8 +16,7 @@ from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.jobs.events import result_of
-from regolith_studio.jobs.model_evaluation import compare_distributions
-from regolith_studio.jobs.model_jobs import make_particles
+from regolith_studio.jobs.model_jobs import compare_distributions, make_particles
 from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, repose_steps
 from regolith_studio.readers.shape_files import radius_of
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, model_settings

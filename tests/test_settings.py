@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 import pytest
 
-from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
+from regolith_studio.cli.options import option_of, with_dataclass_options
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.harmonics.radius_function import REFERENCES, RULES

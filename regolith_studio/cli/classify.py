@@ -5,8 +5,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
-from regolith_studio.cli.options import Json, Seed, claim_json, claim_labels, output_path, usage_errors
+from regolith_studio.cli.options import (
+    Json,
+    Seed,
+    claim_json,
+    claim_labels,
+    option_of,
+    output_path,
+    usage_errors,
+    with_dataclass_options,
+)
 from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
 from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
 from regolith_studio.readers.volumes.region import RegionSettings

@@ -11,14 +11,12 @@ from regolith_studio.cli import (
     dataset,
     extract,
     generate,
-    match,
     particles,
     recipe,
     report,
     repose,
     serve,
     study,
-    uncertainty,
 )
 from regolith_studio.cli.terminal import CommandGroup
 
@@ -75,13 +73,13 @@ app.command("fit")(particles.fit)
 app.command("gallery")(report.gallery)
 app.command("generate")(generate.generate)
 app.command("card")(generate.card)
-app.command("match")(match.match)
+app.command("match")(generate.match)
 app.command("coarsen")(particles.coarsen)
 app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
 app.command("demo")(recipe.demo)
 app.command("report")(report.report)
-app.command("uncertainty")(uncertainty.uncertainty)
+app.command("uncertainty")(study.uncertainty)
 app.command("serve")(serve.serve)
 app.command("check")(check.check)
 app.command("forget")(check.forget)

@@ -7,7 +7,6 @@ from typing import Annotated
 import typer
 
 from regolith_studio.cli.batch_options import BatchOptions, check_fits_memory
-from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import (
     CoarseningOptions,
     Folder,
@@ -23,9 +22,10 @@ from regolith_studio.cli.options import (
     output_path,
     usage_errors,
     values,
+    with_dataclass_options,
 )
 from regolith_studio.cli.terminal import CommandGroup, print_errors, print_json, run_with_progress
-from regolith_studio.dataset.settings import DatasetSettings, ExportSettings, RepresentativesSettings
+from regolith_studio.dataset.parameters import DatasetSettings, ExportSettings, RepresentativesSettings
 from regolith_studio.settings import setting_of, settings_in
 
 DRAW_BYTES, ROW_BYTES = 150, 1500
@@ -85,13 +85,15 @@ def build(
     seed: Seed = 0,
 ) -> None:
     """Coarsen the meshes, or N representatives of them, and write a dataset folder."""
-    from regolith_studio.dataset.quality import quality_table
+    from regolith_studio.dataset.representatives import quality_table
     from regolith_studio.dataset.size_distributions import parse_sizes
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
-    from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder, check_place
-    from regolith_studio.jobs.representatives_jobs import (
+    from regolith_studio.jobs.dataset_jobs import (
+        DatasetOptions,
         RepresentativesRequest,
+        build_dataset_folder,
+        check_place,
         measure_population,
         measure_quality,
     )

@@ -11,8 +11,14 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from regolith_studio.cli.batch_options import Address, Runner, Tls, chosen_executor
-from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.options import Jobs, Json, OptionalFolder, claim_labels, usage_errors
+from regolith_studio.cli.options import (
+    Jobs,
+    Json,
+    OptionalFolder,
+    claim_labels,
+    usage_errors,
+    with_dataclass_options,
+)
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.cli.volume_options import MAX_H, GrainOptions, VolumeOptions
 from regolith_studio.errors import FileError, InputError

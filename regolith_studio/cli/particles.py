@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.batch_options import BatchOptions, check_fits_memory
-from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import (
     CoarseningOptions,
     Folder,
@@ -27,6 +26,7 @@ from regolith_studio.cli.options import (
     exit_code,
     output_path,
     usage_errors,
+    with_dataclass_options,
 )
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE, FitOptions

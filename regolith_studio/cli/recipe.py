@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chosen_executor, print_notes
-from regolith_studio.cli.dataclass_options import option_of
 from regolith_studio.cli.generate import write_particles
 from regolith_studio.cli.offscreen_process import draw_in_process, draw_three_views
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, option_of
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.errors import RegolithError

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.offscreen_process import draw_in_process
 from regolith_studio.cli.options import (
     Degrees,
@@ -18,6 +17,7 @@ from regolith_studio.cli.options import (
     mesh_path,
     usage_errors,
     whole_numbers,
+    with_dataclass_options,
 )
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions

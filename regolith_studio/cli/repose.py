@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.batch_options import Address, Runner, Tls, chosen_executor
-from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
@@ -15,6 +14,7 @@ from regolith_studio.cli.options import (
     claim_folder,
     output_path,
     usage_errors,
+    with_dataclass_options,
 )
 from regolith_studio.cli.repose_calibrate import calibrate
 from regolith_studio.cli.repose_options import (

@@ -5,8 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors, with_dataclass_options
 from regolith_studio.cli.repose_options import CaseOptions, Particles, check_results_folder, varied_values
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 

@@ -6,8 +6,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
-from regolith_studio.cli.options import FACETS, Facets, Json, LMax, ReadingOptions, mesh_path, usage_errors
+from regolith_studio.cli.options import (
+    FACETS,
+    Facets,
+    Json,
+    LMax,
+    ReadingOptions,
+    mesh_path,
+    option_of,
+    usage_errors,
+    with_dataclass_options,
+)
 from regolith_studio.cli.terminal import print_json
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, CoarseningSettings
 

@@ -12,8 +12,12 @@ from typing import Any
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import IGNORED_FILES
-from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
-from regolith_studio.dataset.settings import ExportSettings
+from regolith_studio.dataset.parameters import (
+    ContactParameters,
+    ExportSettings,
+    LiftingCylinderTest,
+    ScriptTimes,
+)
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
 from regolith_studio.io.atomic import exchange, filled_folder, recover_folder

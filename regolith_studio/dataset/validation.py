@@ -14,7 +14,7 @@ from regolith_studio.dataset.folder_io import (
     read_mesh_bytes,
     real_path,
 )
-from regolith_studio.dataset.quality import polyhedra_errors
+from regolith_studio.dataset.representatives import polyhedra_errors
 from regolith_studio.dataset.schema import (
     CompoundRecord,
     HalfSpacesRecord,

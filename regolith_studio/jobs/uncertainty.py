@@ -21,7 +21,12 @@ from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.io.own_files import json_bytes
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
-from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.dataset_jobs import (
+    DatasetOptions,
+    MeasuredPopulation,
+    RepresentativesRequest,
+    build_dataset_folder,
+)
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, result_of
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import VolumeInput
@@ -34,7 +39,6 @@ from regolith_studio.jobs.repose_study import (
     study_repose,
     write_study,
 )
-from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, RepresentativesRequest
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, hash_of_particles, hash_of_rows
 from regolith_studio.jobs.uncertainty_chain import (
     RESCANNED,

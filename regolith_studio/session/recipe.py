@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, model_validator
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.dataset.settings import DatasetSettings, ExportSettings
+from regolith_studio.dataset.parameters import DatasetSettings, ExportSettings
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_TABLE_DEGREE

@@ -8,7 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.options import with_dataclass_options
 
 Number = Annotated[int, typer.Option("--number", help="How many.")]
 Unit = Annotated[str, typer.Option("--unit", help="Of lengths.")]

@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 from scipy.stats import wasserstein_distance
 
-from regolith_studio.dataset.quality import curve_counts, quality_curve, quality_table
-from regolith_studio.dataset.representatives import choose_representatives, representation_error
+from regolith_studio.dataset.representatives import (
+    choose_representatives,
+    curve_counts,
+    quality_curve,
+    quality_table,
+    representation_error,
+)
 from regolith_studio.errors import InputError
 
 from .test_representatives import population

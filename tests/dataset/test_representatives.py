@@ -9,11 +9,12 @@ from scipy.spatial.distance import cdist
 from scipy.stats import norm, wasserstein_distance
 
 from regolith_studio.dataset.build import build_dataset
-from regolith_studio.dataset.quality import polyhedra_errors, representation_of
 from regolith_studio.dataset.representatives import (
     choose_representatives,
     medoid_series,
+    polyhedra_errors,
     representation_error,
+    representation_of,
     sampling_noise,
     shape_features,
 )

@@ -18,8 +18,7 @@ from regolith_studio.dem.lifting_cylinder import SubstepSettings
 from regolith_studio.dem.verification import MeasuredLine, scenes
 from regolith_studio.dem.verification.bodies import N_FACETS, polyhedra_dataset
 from regolith_studio.dem.verification.certificate import Certificate, certificate_document, verifiable_engine
-from regolith_studio.dem.verification.dice import CLOSE, LOOSE, platonic_solids
-from regolith_studio.dem.verification.heaps import HeapRuns, _paired_line
+from regolith_studio.dem.verification.heaps import CLOSE, LOOSE, HeapRuns, _paired_line, platonic_solids
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs import repose_jobs

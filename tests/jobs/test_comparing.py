@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.jobs.events import result_of
-from regolith_studio.jobs.model_evaluation import compare_distributions
+from regolith_studio.jobs.model_jobs import compare_distributions
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 

@@ -19,10 +19,10 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs import compile_kernels
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one
 from regolith_studio.jobs.compile_kernels import TASKS, compile_first, is_compiled
+from regolith_studio.jobs.dataset_jobs import choose_job
 from regolith_studio.jobs.events import Partial, Progress, Started
 from regolith_studio.jobs.lecture_jobs import trace_degrees
 from regolith_studio.jobs.model_jobs import draw_live
-from regolith_studio.jobs.representatives_jobs import choose_job
 from regolith_studio.jobs.scan_jobs import find_grains, scan_of
 
 SLOWLY = "import sys, time, pathlib; time.sleep(0.4); [pathlib.Path(name).touch() for name in sys.argv[1:]]"

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.jobs.events import Partial, Progress, Started, Step
-from regolith_studio.jobs.model_evaluation import ModelEvaluationResult, evaluate_models
-from regolith_studio.jobs.model_jobs import GenerationRequest, draw
+from regolith_studio.jobs.model_jobs import GenerationRequest, ModelEvaluationResult, draw, evaluate_models
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_tables import CONTAINED, common_grid, contours, pair_density

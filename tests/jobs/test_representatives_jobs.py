@@ -13,14 +13,15 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import dataset_jobs
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest
-from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import Partial, Steps
-from regolith_studio.jobs.representatives_jobs import (
+from regolith_studio.jobs.dataset_jobs import (
+    DatasetOptions,
     RepresentativesRequest,
+    build_dataset_folder,
     choose_particles,
     measure_population,
     survey_representatives,
 )
+from regolith_studio.jobs.events import Partial, Steps
 from tests.steps import played
 
 ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", target="particle")

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from regolith_studio.dem.engines import ENGINES
-from regolith_studio.dem.verification import MeasuredLine, Measurement, VerifiableEngine, dice, heaps, scenes
+from regolith_studio.dem.verification import MeasuredLine, Measurement, VerifiableEngine, heaps, scenes
 from regolith_studio.errors import InputError, MissingRequirement
 
 SCENES: Mapping[str, Measurement] = {
@@ -13,8 +13,8 @@ SCENES: Mapping[str, Measurement] = {
     "sliding": scenes.sliding,
     "fall": scenes.fall,
     "stack": scenes.stack,
-    "loose_dice": dice.loose_dice,
-    "tapped_dice": dice.tapped_dice,
+    "loose_dice": heaps.loose_dice,
+    "tapped_dice": heaps.tapped_dice,
 }
 HEAPS: Mapping[str, Measurement] = {
     "rest": heaps.settled_heap,

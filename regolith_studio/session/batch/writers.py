@@ -12,7 +12,7 @@ import numpy as np
 from regolith_studio.dataset.dataset import Provenance
 from regolith_studio.dataset.export import ExportOptions, check_loss_accepted
 from regolith_studio.dataset.folder_io import StoredShape, dataset_hash, write_stored
-from regolith_studio.dataset.settings import ExportSettings, RepresentativesSettings
+from regolith_studio.dataset.parameters import ExportSettings, RepresentativesSettings
 from regolith_studio.dataset.size_distributions import parse_sizes
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import DatasetError, InputError
@@ -29,13 +29,13 @@ from regolith_studio.jobs.batch import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import (
     DatasetOptions,
+    RepresentativesRequest,
     build_dataset_folder,
     chosen_exporters,
     export_dataset_folder,
 )
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.readers.particles import FileProblem
 from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, STAGES, shape_blob
 from regolith_studio.session.outputs.coarsening import document_head

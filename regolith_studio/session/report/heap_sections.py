@@ -14,9 +14,13 @@ from regolith_studio.dem.run_io import TIMES
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.io.tables import Column, Table, write_table
-from regolith_studio.jobs.dataset_jobs import DatasetBuildResult, DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.dataset_jobs import (
+    DatasetBuildResult,
+    DatasetOptions,
+    RepresentativesRequest,
+    build_dataset_folder,
+)
 from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, repose_steps
-from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.jobs.study_jobs import study_coarsening, study_gallery
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.report.sections import (

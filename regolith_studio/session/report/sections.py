@@ -14,9 +14,9 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.tables import Cell, Column, Table
+from regolith_studio.jobs.dataset_jobs import MeasuredPopulation
 from regolith_studio.jobs.events import Step
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.representatives_jobs import MeasuredPopulation
 from regolith_studio.session.report.settings import ReportSettings
 
 TITLE = "Regolith Studio: report on a sample"

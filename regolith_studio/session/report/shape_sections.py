@@ -10,9 +10,9 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.harmonics.synthesis import gallery
 from regolith_studio.io.tables import Column, Table, write_table
+from regolith_studio.jobs.dataset_jobs import MeasuredPopulation, measure_population
 from regolith_studio.jobs.model_jobs import sample_of_meshes
 from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
-from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, measure_population
 from regolith_studio.jobs.study_jobs import study_lmax, study_population
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.report.sections import (

@@ -19,13 +19,12 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.dataset.catalog import CatalogEntry, provenance_tree
-from regolith_studio.dataset.settings import RepresentativesSettings
+from regolith_studio.dataset.parameters import RepresentativesSettings
 from regolith_studio.dataset.size_distributions import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.io.file_names import file_stem
-from regolith_studio.jobs.dataset_jobs import list_library
+from regolith_studio.jobs.dataset_jobs import RepresentativesRequest, list_library
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.settings import setting_of

@@ -20,8 +20,13 @@ from PySide6.QtWidgets import (
 from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import MANY_PARTICLES, CylinderFilling
-from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
-from regolith_studio.dataset.settings import ExportSettings
+from regolith_studio.dataset.parameters import (
+    NOT_GIVEN,
+    ContactParameters,
+    ExportSettings,
+    LiftingCylinderTest,
+    ScriptTimes,
+)
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports

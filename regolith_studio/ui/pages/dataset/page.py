@@ -15,25 +15,23 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import CylinderFilling, cylinder_filling
-from regolith_studio.dataset.quality import QualityPoint
+from regolith_studio.dataset.representatives import QualityPoint
 from regolith_studio.dataset.size_distributions import ShapeClass
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.dataset_jobs import (
+    ChosenParticles,
     DatasetBuildResult,
     DatasetOptions,
+    RepresentativesSurvey,
     build_dataset_folder,
+    choose_job,
     export_dataset_folder,
     open_dataset_folder,
+    survey_representatives,
     validate_dataset_folder,
 )
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.representatives_jobs import (
-    ChosenParticles,
-    RepresentativesSurvey,
-    choose_job,
-    survey_representatives,
-)
 from regolith_studio.messages import N_
 from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest

@@ -9,11 +9,11 @@ from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, Q
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.quality import QualityCurve, QualityPoint
+from regolith_studio.dataset.representatives import QualityCurve, QualityPoint
 from regolith_studio.dataset.size_distributions import ShapeClass
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.representatives_jobs import ChosenParticles
+from regolith_studio.jobs.dataset_jobs import ChosenParticles
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.layout import named, vbox

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, powers
 from regolith_studio.io.tables import Cell, Table
-from regolith_studio.jobs.model_evaluation import ModelEvaluationResult
+from regolith_studio.jobs.model_jobs import ModelEvaluationResult
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.shape_models.models import MODELS

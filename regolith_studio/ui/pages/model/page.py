@@ -17,14 +17,15 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.model_evaluation import compare_distributions, evaluate_models
 from regolith_studio.jobs.model_jobs import (
     GenerationRequest,
     GenerationResult,
     ModelFitResult,
     ModelOrigin,
+    compare_distributions,
     draw_live,
     draw_shapes,
+    evaluate_models,
     fit_shapes,
     make_card,
     make_particles,
