@@ -19,6 +19,7 @@ SURFACE_DISTANCE, PLATE_DISTANCE = 1.5, 1.0
 """Between the region and the surface of the heap, and the plate, in mean diameters."""
 CONTACT_MARGIN = 0.01
 """Particles touch if they are at most this far apart, in mean diameters."""
+# Of as many random points the fraction would scatter by 0.002.
 N_POINTS = 2**16
 """Quasi-random points in the box of the region at which the solid fraction is counted."""
 MIN_PARTICLES = 20

@@ -244,6 +244,7 @@ N_DICE, ACROSS, FRICTION = 1000, 10.0, 0.4
 """Dice, diameter of the cylinder in theirs, and friction of plastic on plastic and of the walls."""
 MARGIN = 2.0
 """Distance of the region that is measured from wall, bottom and top, in mean diameters."""
+# Of as many random points the fraction would scatter by 0.003, a tenth of the band.
 N_POINTS = 2**15
 N_TAPS, TAP_ACCELERATION, TAP_TIME, PAUSE = 150, 4.0, 1.5, 6.0
 """Taps, each one period of a vertical vibration in the frame of the cylinder, and the pause after it; the
