@@ -209,7 +209,8 @@ def show_recovery_and_tour(window: "MainWindow") -> None:
     timer = QTimer(window, interval=FILLED_CHECK)
 
     def start_when_filled() -> None:
-        if window.session.results.polyhedron is not None or not window.session.tasks:
+        filled = window.session.results.polyhedron is not None or not window.session.tasks
+        if filled and QApplication.activeModalWidget() is None:  # else the question about a recovery is open
             timer.stop()
             if window.pages.current == FIRST_PAGE:  # else its user is at work already
                 window.show_tour()

@@ -95,6 +95,18 @@ def test_that_a_point_of_the_plot_chooses_its_row(window, page):
     assert page.table.chosen() == ["angular-2", "bead-1"]
 
 
+def test_that_keys_sort_the_table_and_show_the_distribution_of_its_column(page):
+    table, keys = page.table, Qt.Key
+    columns = table.particles.columns
+    listed = [each.key for number, each in enumerate(columns) if not table.isColumnHidden(number)]
+    both = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    for key in (keys.Key_Right, *[keys.Key_Right] * listed.index("volume"), keys.Key_Down):
+        QTest.keyClick(table, key, both)
+    volumes = [entry.descriptors["volume"] for entry in table.particles.rows]
+    assert volumes == sorted(volumes, reverse=True)
+    assert page.statistics.choices()["key"] == "volume"
+
+
 @pytest.mark.slow
 def test_that_columns_sort_by_number(page):
     column = [each.key for each in page.table.particles.columns].index("volume")

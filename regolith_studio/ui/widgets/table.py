@@ -17,7 +17,7 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QPixmap, QResizeEvent, QShowEvent, QStandardItem, QStandardItemModel
+from PySide6.QtGui import QKeyEvent, QPixmap, QResizeEvent, QShowEvent, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QTableView
 
 from regolith_studio.coarsening.weights import JACCARD
@@ -401,6 +401,25 @@ class ParticleTable(_FittedTable):
         super().resizeEvent(event)
         if not self._scrolls:
             self._list_columns()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Ctrl+Shift with an arrow chooses column and order of the sorting: Qt's header takes no keys."""
+        header, key, keys = self.horizontalHeader(), event.key(), Qt.Key
+        modifiers = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+        if event.modifiers() & modifiers != modifiers or not keys.Key_Left <= key <= keys.Key_Down:
+            super().keyPressEvent(event)
+            return
+        column, order = header.sortIndicatorSection(), header.sortIndicatorOrder()
+        listed = [number for number in range(header.count()) if not header.isSectionHidden(number)]
+        if column not in listed:
+            column = listed[0]
+        elif key in (keys.Key_Left, keys.Key_Right):
+            step = 1 if key == keys.Key_Right else -1
+            column = listed[(listed.index(column) + step) % len(listed)]
+        if key in (keys.Key_Up, keys.Key_Down):
+            order = Qt.SortOrder.AscendingOrder if key == keys.Key_Up else Qt.SortOrder.DescendingOrder
+        self.sortByColumn(column, order)
+        self.scrollTo(self.particles.index(max(self.currentIndex().row(), 0), column))
 
     def set_filter(self, keeps: Filter | None) -> None:
         """List only the particles for which this is true."""

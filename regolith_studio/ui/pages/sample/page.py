@@ -358,13 +358,13 @@ class SamplePage(PageWidget):
         self.filter.textChanged.connect(self._filter)
         self.table.chosenChanged.connect(lambda _ids: self._show_pictures())
         self.table.currentChosen.connect(self._select)
-        self.table.horizontalHeader().sectionClicked.connect(self._show_column)
+        self.table.horizontalHeader().sortIndicatorChanged.connect(self._show_column)
         self.table.doubleClicked.connect(lambda _index: self._context.go("explore"))
         self.scatter.pointChosen.connect(self._choose_point)
         self.health.showChanged.connect(lambda _on: self._draw_faults())
 
-    def _show_column(self, column: int) -> None:
-        """Show the distribution of the column that was clicked."""
+    def _show_column(self, column: int, _order: Qt.SortOrder) -> None:
+        """Show the distribution of the column by which the table is sorted."""
         self.statistics.choose({"key": self.table.particles.columns[column].key})
 
     def _filter(self, text: str) -> None:
