@@ -99,6 +99,7 @@ def test_that_building_finds_the_representatives_first(page, wait, tmp_path, mon
     assert not page.targets.export.isEnabled()
     page.sizes.set_text("measured")
     QTest.mouseClick(page.targets.export, Qt.MouseButton.LeftButton)
+    assert page.result.record.state is ResultState.RUNNING
     wait(lambda: page._dataset is not None)
     assert len(read_dataset(tmp_path / "regolith")) == 3
     QTest.mouseClick(page.representatives.start, Qt.MouseButton.LeftButton)

@@ -12,7 +12,7 @@ from regolith_studio.ui.dialogs.files import FolderDialog
 def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
     """What comes of typing a name into the dialog, and what is said against it."""
 
-    def run(typed, by="key"):
+    def run(typed, by="key", proposed=""):
         said, begun = [], []
 
         def look():
@@ -22,7 +22,8 @@ def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
                 dialog.accept()
             elif isinstance(dialog, FolderDialog) and not begun:
                 line = dialog.findChild(QLineEdit, "fileNameEdit")
-                line.setText(typed)
+                if not proposed:
+                    line.setText(typed)
                 begun.append(dialog)
                 button = next(each for each in dialog.findChildren(QPushButton) if "hoose" in each.text())
                 answers = {
@@ -36,7 +37,7 @@ def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
         timer = QTimer(interval=20)
         timer.timeout.connect(look)
         timer.start()
-        chosen = FolderDialog.ask(None, "Folder of figures", str(tmp_path))
+        chosen = FolderDialog.ask(None, "Folder of figures", str(tmp_path), proposed)
         timer.stop()
         return chosen, said
 
@@ -54,6 +55,12 @@ def test_that_a_new_folder_is_made_by_its_name(answered, tmp_path, name, by):
 def test_that_a_name_alone_is_a_folder_in_the_one_that_is_shown(answered, tmp_path):
     assert answered("figures") == (str(tmp_path / "figures"), [])
     assert (tmp_path / "figures").is_dir()
+
+
+@pytest.mark.parametrize("by", ["key", "mouse"])
+def test_that_a_proposed_folder_needs_one_key_or_click(answered, tmp_path, by):
+    assert answered("", by, "grains-dem") == (str(tmp_path / "grains-dem"), [])
+    assert (tmp_path / "grains-dem").is_dir()
 
 
 def test_that_a_folder_that_is_there_is_taken_as_it_is(answered, tmp_path):

@@ -211,9 +211,10 @@ class FolderDialog(QFileDialog):
     - ``parent``: the dialog is in front of.
     - ``title``: what the folder is for.
     - ``start``: the folder that is shown first; that of the program if there is none.
+    - ``proposed``: name of a folder in it that is chosen unless another one is.
     """
 
-    def __init__(self, parent: QWidget | None, title: str, start: str = "") -> None:
+    def __init__(self, parent: QWidget | None, title: str, start: str = "", proposed: str = "") -> None:
         super().__init__(parent, title, start)
         self.setObjectName("folder_dialog")
         self.setFileMode(QFileDialog.FileMode.Directory)
@@ -221,11 +222,13 @@ class FolderDialog(QFileDialog):
         self.setLabelText(QFileDialog.DialogLabel.FileName, tr("Folder (created if missing):"))
         if (line := self._line()) is not None:
             line.textChanged.connect(self._allow)  # after Qt, which greys the button out for a new one
+        if proposed:
+            self.selectFile(proposed)
 
     @staticmethod
-    def ask(parent: QWidget | None, title: str, start: str = "") -> str:
+    def ask(parent: QWidget | None, title: str, start: str = "", proposed: str = "") -> str:
         """The path of the folder, which is there now; empty where nobody wants any."""
-        dialog = FolderDialog(parent, title, start)
+        dialog = FolderDialog(parent, title, start, proposed)
         try:
             agreed = dialog.exec() == QDialog.DialogCode.Accepted
             return dialog.selectedFiles()[0] if agreed and dialog.selectedFiles() else ""

@@ -72,6 +72,8 @@ from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import tr, tr_count
 
 FIND, BUILD, EXPORT = "find", "build", "export"
+PROPOSED = "regolith-dem"
+"""Folder in that of the user which the first export proposes."""
 SETTINGS = (*SHAPE_FIELDS, *("weights", "settings", "seed", "target", "l_max", "level", "fit_options"))
 """Choices that the shapes of a dataset depend on."""
 MAX_MEASURED = 200
@@ -202,7 +204,13 @@ class DatasetPage(PageWidget):
         known = self._survey.population if self._survey else None
         job = Job(survey_representatives, (self._particles, self.representatives.request(), known))
         self._context.start(
-            tr("Finding representatives"), job, self._show_survey, partial=self._show_point, queue=FIND
+            tr("Finding representatives"),
+            job,
+            self._show_survey,
+            self._show_point,
+            self._show_failure if to_build else None,
+            self._forget_dataset if to_build else None,
+            FIND,
         )
 
     def build_in(self, folder: Path, overwrite: bool = False, exports: Path | None = None) -> None:
@@ -214,6 +222,7 @@ class DatasetPage(PageWidget):
         if self.sizes.sizing() is None:
             return
         every = self.representatives.every
+        self.result.show_record(ResultRecord(state=ResultState.RUNNING, note=str(folder)))
         if not every and (self._chosen is None or survey_now is None):
             self._find(to_build=(folder, overwrite, exports))
             return
@@ -228,7 +237,6 @@ class DatasetPage(PageWidget):
         population = None if every or survey_now is None else survey_now.population
         arguments = (self._particles, session.choices.coarsening_request, folder, options, population)
         self._context.remember("place", str(folder.parent))
-        self.result.show_record(ResultRecord(state=ResultState.RUNNING, note=str(folder)))
         self._context.start(
             tr("Building the dataset"),
             Job(build_dataset_folder, arguments),
@@ -244,7 +252,8 @@ class DatasetPage(PageWidget):
         self._context.toast.problem(failure.sentence, failure.details)
 
     def open_dataset(self) -> None:
-        name = QFileDialog.getExistingDirectory(self, tr("Open a dataset"), self._place_before())
+        place = str(self._context.recall("place", str(Path.home())))
+        name = QFileDialog.getExistingDirectory(self, tr("Open a dataset"), place)
         if name:
             self.open_folder(Path(name))
 
@@ -278,7 +287,8 @@ class DatasetPage(PageWidget):
         if not self.targets.export.isEnabled():  # asked for by its key or from the palette
             self._context.toast.problem(self.targets.export.toolTip())
             return
-        name = FolderDialog.ask(self, tr("Export into this folder"), self._place_before())
+        before = Path(self._context.recall("place", str(Path.home() / PROPOSED)))
+        name = FolderDialog.ask(self, tr("Export into this folder"), str(before.parent), before.name)
         if not name:
             return
         if self._is_current():
@@ -314,9 +324,6 @@ class DatasetPage(PageWidget):
             failed=self._show_failure,
             queue=EXPORT,
         )
-
-    def _place_before(self) -> str:
-        return str(self._context.recall("place", str(Path.home())))
 
     def _confirm(self, question: str) -> bool:
         answer = QMessageBox.question(self, tr("Replace the dataset"), question)
