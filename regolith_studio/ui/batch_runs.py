@@ -22,7 +22,7 @@ from regolith_studio.ui.widgets.toast import Toast
 if TYPE_CHECKING:  # what they bring is loaded when it is asked for
     from regolith_studio.session.report.write import WrittenReport
     from regolith_studio.session.run_recipe import RecipeRun
-    from regolith_studio.ui.dialogs.report import ReportDialog, ReportRequest
+    from regolith_studio.ui.dialogs.batch import ReportDialog, ReportRequest
 
 Dialog = TypeVar("Dialog", bound=RunDialog)
 
@@ -152,7 +152,7 @@ class ReportRuns(DialogRuns["ReportDialog"]):
     QUEUE, TITLE = "report", N_("Making the report")
 
     def make_dialog(self) -> "ReportDialog":
-        from regolith_studio.ui.dialogs.report import ReportDialog
+        from regolith_studio.ui.dialogs.batch import ReportDialog
 
         session = self._session
         folder = Path.home() / "regolith-report"

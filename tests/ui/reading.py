@@ -20,8 +20,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.views.view import ViewFrame
 from regolith_studio.ui.widgets.fields import text_room
-from regolith_studio.ui.widgets.plots.base import Plot
-from regolith_studio.ui.widgets.plots.export import plain_text
+from regolith_studio.ui.widgets.plots.base import Plot, plain_text
 
 SAME_EVERYWHERE = re.compile(
     "|".join(

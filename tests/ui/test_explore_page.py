@@ -11,11 +11,11 @@ from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.scene import overlays
 from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import SURFACE
-from regolith_studio.ui.pages.explore.pictures import PictureDialog
+from regolith_studio.ui.pages.explore.page import PictureDialog
 
 SECONDS = 120.0
 VEIL = OTHER + SURFACE
-ASKED = "regolith_studio.ui.pages.explore.pictures.QFileDialog.getSaveFileName"
+ASKED = "regolith_studio.ui.pages.explore.page.QFileDialog.getSaveFileName"
 
 
 def seen(window, view, name):

@@ -31,9 +31,8 @@ from regolith_studio.session.sample_table import health_word
 from regolith_studio.session.tasks import Task
 from regolith_studio.studies.lmax import LmaxStudy
 from regolith_studio.ui.activity import IDLE, TasksPanel
-from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
 from regolith_studio.ui.pages.explore.page import ParticleListPanel
-from regolith_studio.ui.pages.explore.panels import AssessmentPanel, FitPanel, LossPanel
+from regolith_studio.ui.pages.explore.panels import AssessmentPanel, CoarseningPanel, FitPanel, LossPanel
 from regolith_studio.ui.pages.explore.plots import DescriptorTablePanel, ErrorBarsPanel, LossCurvePanel
 from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
 from regolith_studio.ui.result_card import ResultState
@@ -213,19 +212,21 @@ def test_that_the_list_shows_what_is_known_and_announces_the_row_that_is_clicked
     assert panel.value() == {"selected": "large"}
 
 
-def test_that_a_list_of_any_width_shows_whole_names_and_whole_columns(shown, app):
+def test_that_a_list_of_any_width_shows_whole_names_and_whole_columns(shown, wait):
     panel = shown(ParticleListPanel())
     panel.set_entries([measured("agglutinate-1", 1.0), measured("bead-2", 2.0)])
     table, name = panel.table, QFontMetrics(panel.table.font()).horizontalAdvance("agglutinate-1")
+
+    def seen():
+        return [each for each in range(5) if not table.isColumnHidden(each)]
+
     for width, columns in ((150, 1), (230, 2), (500, 4)):
         panel.resize(width, 300)
-        app.processEvents()
+        wait(lambda columns=columns: len(seen()) == columns)  # a display may answer late
         assert table.columnWidth(0) >= name
         assert table.horizontalScrollBar().maximum() == 0
         assert table.isColumnHidden(1), "one group needs no column"
-        seen = [each for each in range(5) if not table.isColumnHidden(each)]
-        assert len(seen) == columns, width
-        assert all(table.columnWidth(each) >= table.sizeHintForColumn(each) for each in seen)
+        assert all(table.columnWidth(each) >= table.sizeHintForColumn(each) for each in seen())
     tip = table.model().index(0, 0).data(Qt.ItemDataRole.ToolTipRole)
     assert tip.startswith("agglutinate-1\nV [µm³] ")
 

@@ -17,9 +17,9 @@ from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.session import Session
 from regolith_studio.ui.batch_runs import ReportRuns
 from regolith_studio.ui.bindings import Bindings
-from regolith_studio.ui.dialogs.report import ReportDialog
+from regolith_studio.ui.dialogs.batch import ReportDialog
 from regolith_studio.ui.startup import MainThreadInvoker
-from regolith_studio.ui.widgets.plots.export import plain_text
+from regolith_studio.ui.widgets.plots.base import plain_text
 from regolith_studio.ui.widgets.toast import Toast
 
 HELD = threading.Event()

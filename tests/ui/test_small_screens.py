@@ -13,7 +13,7 @@ from regolith_studio.ui.page import ScrollablePage
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.pages.explore.plots import FONT_SIZE as LETTERS_OF_TWO
 from regolith_studio.ui.theme import choose_font_size
-from regolith_studio.ui.widgets.plots.export import plain_text
+from regolith_studio.ui.widgets.plots.base import plain_text
 
 SCREEN = QSize(960, 540)
 FRAME = 40

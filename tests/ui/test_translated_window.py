@@ -19,12 +19,11 @@ from regolith_studio.readers.volumes.header import DatasetEntry, VolumeHeader
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.actions import CommandPalette
 from regolith_studio.ui.appearance import PreferencesDialog
-from regolith_studio.ui.dialogs.batch import BatchDialog
+from regolith_studio.ui.dialogs.batch import BatchDialog, ReportDialog
 from regolith_studio.ui.dialogs.files import UnitDialog
 from regolith_studio.ui.dialogs.help import about_dialog, start_tour, steps
-from regolith_studio.ui.dialogs.report import ReportDialog
 from regolith_studio.ui.keyboard import ShortcutsDialog
-from regolith_studio.ui.pages.explore.pictures import PictureDialog
+from regolith_studio.ui.pages.explore.page import PictureDialog
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.project_files import may_close
 from regolith_studio.ui.startup import open_window

@@ -28,7 +28,7 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fields import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel
-from regolith_studio.ui.widgets.plots.export import plain_text
+from regolith_studio.ui.widgets.plots.base import plain_text
 
 WHEEL_ZOOM = 1.12
 """Factor of one notch of the wheel."""

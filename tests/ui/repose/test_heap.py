@@ -18,8 +18,7 @@ from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import orbited
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.repose.heap import MANY_DISCS, drawn_discs, particle_text
-from regolith_studio.ui.pages.repose.player import RunPlayer
-from regolith_studio.ui.pages.repose.positions import PositionsDialog
+from regolith_studio.ui.pages.repose.player import PositionsDialog, RunPlayer
 from tests.ui.repose.conftest import import_positions, pile_of
 
 

@@ -51,8 +51,7 @@ from regolith_studio.ui.pages.repose.heap import (
     run_origin,
     scale_of_run,
 )
-from regolith_studio.ui.pages.repose.player import RunPlayer
-from regolith_studio.ui.pages.repose.positions import choose_positions, export_measurement, read_pile
+from regolith_studio.ui.pages.repose.player import RunPlayer, choose_positions, export_measurement, read_pile
 from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
 from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController

@@ -38,8 +38,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, health_sentences, sample_table
 from regolith_studio.ui.layout import STRETCH, equal_parts, hbox, named, side_by_side, stacked, tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.sample.match import MatchPanel
-from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
+from regolith_studio.ui.pages.sample.plots import MatchPanel, ScatterPanel, StatisticsPanel
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import localized, number_text, rich, tr, translate, with_decimal_point
 from regolith_studio.ui.views.image_view import make_view

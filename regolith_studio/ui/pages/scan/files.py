@@ -42,8 +42,7 @@ from regolith_studio.session.provenance import VolumeSource
 from regolith_studio.session.recipe import VolumeEntry
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
-from regolith_studio.ui.pages.scan.corrections import Corrections
-from regolith_studio.ui.pages.scan.painting import Painting
+from regolith_studio.ui.pages.scan.corrections import Corrections, Painting
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
 from regolith_studio.ui.translation import tr, translate
 

@@ -28,9 +28,8 @@ from regolith_studio.jobs.scan_jobs import (
 from regolith_studio.ui.layout import CONTROLS_WIDTH, hbox, padded, scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls, WorkflowPanel
-from regolith_studio.ui.pages.scan.corrections import Corrections
+from regolith_studio.ui.pages.scan.corrections import Corrections, Painting
 from regolith_studio.ui.pages.scan.files import ParticleMaking, SettingsFiles, VolumeOpening
-from regolith_studio.ui.pages.scan.painting import Painting
 from regolith_studio.ui.pages.scan.slices import SlicesView
 from regolith_studio.ui.pages.scan.tools import Brush, BrushPanel, EditsPanel, ObjectsPanel
 from regolith_studio.ui.result_card import ResultRecord, RunController

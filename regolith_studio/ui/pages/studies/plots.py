@@ -37,9 +37,8 @@ from regolith_studio.ui.widgets.heat_table import (
     set_head_tips,
 )
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
-from regolith_studio.ui.widgets.plots.base import Numbers
+from regolith_studio.ui.widgets.plots.base import Numbers, plain_text
 from regolith_studio.ui.widgets.plots.curves import HOVER_DISTANCE, CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.plots.export import plain_text
 from regolith_studio.ui.widgets.table import FontRowHeight, definition
 
 Values = tuple[float, ...]

@@ -11,8 +11,7 @@ from PySide6.QtGui import QColor
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.ui.translation import number_text, tr
-from regolith_studio.ui.widgets.plots.base import Numbers, Plot, PlotCanvas
-from regolith_studio.ui.widgets.plots.export import plain_text
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot, PlotCanvas, plain_text
 
 SYMBOL = 5
 """Diameter of a symbol in pixels."""
