@@ -12,7 +12,8 @@ import numpy as np
 
 from benchmarks.populations import measured, realized, sample_from
 from benchmarks.result_files import Rows, add_result, show_row
-from regolith_studio.dataset.representatives import NEEDED, quality_curve, sampling_noise
+from regolith_studio.dataset.representatives import NEEDED, quality_steps, sampling_noise
+from regolith_studio.jobs.events import result_of
 
 PARTS, CHOICES = (10, 60, 150, 600), 20
 COUNTS = (1, 5, 10, 20, 70, 200)
@@ -38,7 +39,7 @@ def main(path: str, seed: int, result: str) -> None:
             pairs = zip(compared[order[:n]].T, compared[order[n:]].T, compared.std(axis=0), strict=True)
             both[1] += [wasserstein_distance(part, rest) / deviation for part, rest, deviation in pairs]
         show_row(parts, str(n), (both.ravel() / CHOICES).tolist())
-    curve = quality_curve(rows, COUNTS)
+    curve = result_of(quality_steps(rows, COUNTS))
     distances: Rows = {}
     for count, errors in (
         *((str(point.count), point.errors) for point in curve.points),

@@ -470,30 +470,6 @@ def quality_steps(
     return QualityCurve(tuple(points), noise, len(population), weighting, tuple(choices))
 
 
-def quality_curve(
-    population: Sequence[Mapping[str, float]],
-    counts: Sequence[int] | None = None,
-    *,
-    weighting: Weighting = "number",
-    size_importance: float = 0.0,
-    seed: int = 0,
-) -> QualityCurve:
-    """As :func:`quality_steps`, at once; by default for :func:`curve_counts`."""
-    steps = quality_steps(
-        population,
-        counts or curve_counts(len(population)),
-        weighting=weighting,
-        size_importance=size_importance,
-        seed=seed,
-    )
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            curve: QualityCurve = end.value
-            return curve
-
-
 def quality_table(curve: QualityCurve) -> Table:
     """Errors over the number of representatives; the row whose number is missing is the sampling noise."""
     keys = tuple(curve.points[0].errors)

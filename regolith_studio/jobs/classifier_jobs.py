@@ -47,7 +47,7 @@ from regolith_studio.imaging.volume import Volume, box_between
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceImages, SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.own_files import canonical_json
-from regolith_studio.jobs.events import Partial, Progress, Started, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Steps, as_progress
 from regolith_studio.jobs.extraction_jobs import finished_slabs, unfinished_file, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.scan_jobs import (
@@ -117,12 +117,7 @@ def map_probabilities(
         volume: Volume = yield from read_all(source, arrays)
         steps = probability_map(train(training), _background_outside(volume, arrays, outside), arrays)
         yield Started(N_("Predicting grains"))
-        while True:
-            try:
-                yield Progress(*next(steps))
-            except StopIteration as end:
-                shares = end.value
-                break
+        shares = yield from as_progress(steps)
         yield Started(Message(N_("Writing {name}"), name=path.name))
         for done, total in write_probability_file(path, shares):
             yield Progress(done, total)
@@ -319,12 +314,7 @@ def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Exam
 def describe_grains(grey: Volume, segmentation: Segmentation) -> Steps:
     """Measure all objects of a segmentation; returns their :class:`ObjectTable`."""
     yield Started(N_("Describing objects"))
-    steps = describe_objects(segmentation.labels, grey)
-    while True:
-        try:
-            yield Progress(*next(steps))
-        except StopIteration as end:
-            return end.value
+    return (yield from as_progress(describe_objects(segmentation.labels, grey)))
 
 
 def find_suspects(grey: Volume, found: Segmentation) -> Steps:

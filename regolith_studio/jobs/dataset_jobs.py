@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
+from itertools import count
 from pathlib import Path
 
 from regolith_studio.dataset.build import build_dataset, singleton_class
@@ -23,6 +24,7 @@ from regolith_studio.dataset.parameters import RepresentativesSettings
 from regolith_studio.dataset.representatives import (
     NEEDED,
     QualityCurve,
+    QualityPoint,
     RepresentativeSelection,
     choose_representatives,
     curve_counts,
@@ -40,7 +42,7 @@ from regolith_studio.harmonics.coefficients import ShCoefficients, sample_spectr
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_sample
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_events
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.particle_jobs import measure_sample
 from regolith_studio.messages import N_, count_message
@@ -145,17 +147,14 @@ def measure_quality(population: MeasuredPopulation, request: RepresentativesRequ
         size_importance=request.size_importance,
         seed=request.seed,
     )
-    done = 0
-    while True:
-        try:
-            point = next(steps)
-        except StopIteration as end:
-            curve: QualityCurve = end.value
-            return curve
-        done += 1
+    numbers = count(1)
+
+    def events_of(point: QualityPoint) -> Iterator[Step]:
         yield Partial(point)
-        progress = count_message(N_("1 representative"), N_("{count} representatives"), point.count)
-        yield Progress(done, len(counts), progress)
+        message = count_message(N_("1 representative"), N_("{count} representatives"), point.count)
+        yield Progress(next(numbers), len(counts), message)
+
+    return (yield from as_events(steps, events_of))
 
 
 def choose_particles(population: MeasuredPopulation, request: RepresentativesRequest) -> ChosenParticles:

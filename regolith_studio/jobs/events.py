@@ -7,9 +7,9 @@ one :class:`Finished`, :class:`Failed` or :class:`Stopped`, which always comes l
 
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Job:
         return self.function(*self.arguments, **self.options)
 
 
-def result_of(steps: Steps) -> Any:
+def result_of(steps: Generator[Any, None, Any]) -> Any:
     """Do all steps of a job in this thread, and return its result.
 
     Parameters
@@ -100,6 +100,28 @@ def result_of(steps: Steps) -> Any:
             next(steps)
         except StopIteration as end:
             return end.value
+
+
+_Other = TypeVar("_Other")
+_Result = TypeVar("_Result")
+
+
+def as_events(
+    steps: Generator[_Other, None, _Result], events_of: Callable[[_Other], Iterable[Step]]
+) -> Generator[Step, None, _Result]:
+    """Do steps of another kind, yield the events of each, and return the result."""
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            result: _Result = end.value
+            return result
+        yield from events_of(step)
+
+
+def as_progress(steps: Generator[tuple[int, int], None, _Result]) -> Generator[Step, None, _Result]:
+    """Do steps that yield how many of how many are done."""
+    return as_events(steps, lambda count: (Progress(*count),))
 
 
 _SPAN = 60.0

@@ -38,7 +38,7 @@ from regolith_studio.io.checkpoint import Checkpoint
 from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Progress, Started, Step, Steps, as_events
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
@@ -273,15 +273,13 @@ def _handed_over(
     steps: Generator[ExtractionProgress, None, Extraction], sink: Callable[[Any], None] | None = None
 ) -> Generator[Step, None, Extraction]:
     """The steps as events; what was made is given to `sink` before."""
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            extraction: Extraction = end.value
-            return extraction
+
+    def events_of(step: ExtractionProgress) -> Iterator[Step]:
         if sink is not None:
             sink(step.made)
         yield Progress(step.done, step.total, step.name)
+
+    return as_events(steps, events_of)
 
 
 def _summary_of(segmentation: Segmentation) -> SegmentationSummary:

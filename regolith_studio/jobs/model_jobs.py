@@ -20,7 +20,7 @@ from regolith_studio.io.atomic import write_in_stage
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, as_events
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_sample, measure_particle
 from regolith_studio.jobs.study_jobs import study_population
@@ -417,13 +417,8 @@ def evaluation_panels(
     panels = {name: density_panels(study, name) for name in WEIGHTINGS}
     panels |= {"quantiles": quantile_panels(study), "components": components_panels(study)}
     yield at_figures
-    pairs = pair_panels(study)
-    while True:
-        try:
-            next(pairs)
-        except StopIteration as end:
-            return ModelEvaluationResult(study, panels | {"pairs": end.value})
-        yield at_figures
+    pairs = yield from as_events(pair_panels(study), lambda _step: (at_figures,))
+    return ModelEvaluationResult(study, panels | {"pairs": pairs})
 
 
 MAX_COMPARED = 300

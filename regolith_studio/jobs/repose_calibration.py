@@ -1,7 +1,7 @@
 """Job that calibrates contact parameters by runs of a lifting cylinder, one after the other."""
 
 from collections import Counter
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -14,7 +14,7 @@ from regolith_studio.dem.run_io import read_run
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import JOURNAL
 from regolith_studio.io.output_lock import output_lock
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, result_of
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_events, result_of
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest
 from regolith_studio.jobs.repose_study import (
     CASE_KEYS,
@@ -227,23 +227,21 @@ def _next_run(
     names = [each.name for each in calibration.parameters]
     values = calibration.next_values
     variant = _variant(request, number, dict(zip(names, values, strict=True)))
-    documents = []
+    documents, total = [], PROGRESS_STEPS * request.max_runs
+
+    def events_of(step: Step) -> Iterator[Step]:
+        if isinstance(step, Progress):
+            message = Message(N_("run {number}: {step}"), number=number + 1, step=step.message)
+            yield Progress(PROGRESS_STEPS * number + step.done, total, message)
+
     for suffix, each in (("", variant), (IN_DRUM, _in_drum(request, variant))):
         if each is None:
             continue
         known = finished_run(study_place(folder, name + suffix, KIND), each.dataset, each.request)
-        place, total = folder / JOURNAL / KIND / (name + suffix), PROGRESS_STEPS * request.max_runs
-        steps = simulate_study_run(each.dataset, place, each.request)
-        while known is None:
-            try:
-                step = next(steps)
-            except StopIteration as end:
-                known = end.value
-                break
-            if isinstance(step, Progress):
-                message = Message(N_("run {number}: {step}"), number=number + 1, step=step.message)
-                yield Progress(PROGRESS_STEPS * number + step.done, total, message)
-        assert known is not None
+        place = folder / JOURNAL / KIND / (name + suffix)
+        if known is None:
+            steps = simulate_study_run(each.dataset, place, each.request)
+            known = yield from as_events(steps, events_of)
         if known["state"] == "failed" and not calibration.runs:
             raise RegolithError(known["problem"])
         documents.append(known)

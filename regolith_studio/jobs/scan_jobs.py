@@ -3,7 +3,7 @@
 import math
 import os
 import tempfile
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -45,7 +45,7 @@ from regolith_studio.imaging.volume_slabs import (
     unpacked,
 )
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_events, as_progress
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.read import VolumeFile, describe_volume
@@ -193,13 +193,7 @@ def read_all(
     source: SliceSource, scratch: ScratchArrays, run: ParallelMap = map
 ) -> Generator[Step, None, Volume]:
     """All voxels of a volume in `scratch`, where parts of them can be worked on."""
-    steps = unpacked(source, scratch, run)
-    while True:
-        try:
-            yield Progress(*next(steps))
-        except StopIteration as end:
-            volume: Volume = end.value
-            return volume
+    return as_progress(unpacked(source, scratch, run))
 
 
 def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
@@ -322,14 +316,14 @@ def _map_volume(source: SliceSource, outside: str) -> Generator[Step, None, Scan
 
 
 def slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
-    steps = coarse_copy(volume)
-    while True:
-        try:
-            done, total = next(steps)
-        except StopIteration as end:
-            return SliceImages(volume.array, *end.value)
-        if done % 16 == 0:
-            yield Progress(done, total, N_("Reading the slices"))
+    copy = yield from as_events(coarse_copy(volume), _reading_events)
+    return SliceImages(volume.array, *copy)
+
+
+def _reading_events(count: tuple[int, int]) -> Iterator[Step]:
+    done, total = count
+    if done % 16 == 0:
+        yield Progress(done, total, N_("Reading the slices"))
 
 
 def _n_bytes(source: SliceSource) -> int:

@@ -24,7 +24,7 @@ from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.io.checkpoint import Checkpoint, CheckpointRecord
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, as_events, result_of
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
@@ -258,14 +258,13 @@ def _with_answers(mapper: Mapper, answers: StudyCheckpoint | None) -> Mapper:
 
 def as_job_steps(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:
     """The steps of a study as events of a job."""
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            return end.value
-        yield Progress(step.done, step.total, step.message)
-        if step.partial is not None:
-            yield Partial(step.partial)
+    return as_events(steps, _study_events)
+
+
+def _study_events(step: StudyProgress) -> Iterator[Step]:
+    yield Progress(step.done, step.total, step.message)
+    if step.partial is not None:
+        yield Partial(step.partial)
 
 
 @dataclass(frozen=True)
@@ -342,7 +341,7 @@ def coarsen_column(
     fit = _fit_of(particle, request)
     cells: list[dict[str, Any] | str] = []
     for row in rows:
-        outcome = _result_of(_outcome(particle, _with_loss(request, row), column, fit, Progress(0, 0)))
+        outcome = result_of(_outcome(particle, _with_loss(request, row), column, fit, Progress(0, 0)))
         coarsened = outcome.coarsened
         cell = outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened)
         cells.append(cell if isinstance(cell, str) else cell.document())
@@ -394,20 +393,7 @@ def _outcome(
         return CoarsenedParticle(particle.name, index, None, fit)
     steps = coarsen_particle(particle, request, index, fit)
     try:
-        while True:
-            next(steps)
-            yield now
-    except StopIteration as end:
-        outcome: CoarsenedParticle = end.value
+        outcome: CoarsenedParticle = yield from as_events(steps, lambda _step: (now,))
         return outcome
     except RegolithError as error:
         return CoarsenedParticle(particle.name, index, None, str(error))
-
-
-def _result_of(steps: Generator[Step, None, CoarsenedParticle]) -> CoarsenedParticle:
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            outcome: CoarsenedParticle = end.value
-            return outcome

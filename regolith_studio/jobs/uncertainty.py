@@ -27,7 +27,7 @@ from regolith_studio.jobs.dataset_jobs import (
     RepresentativesRequest,
     build_dataset_folder,
 )
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, result_of
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, as_events, result_of
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.repose_jobs import ReposeRequest
@@ -303,22 +303,16 @@ def _angles(
             budget, angle=_angle_budget(plan, same, study, request, folder, notes), not_counted=not_counted
         )
 
-    study = ReposeStudy(())
-    steps = study_repose(rows, folder, 1, executor)
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            study = end.value
-            break
-        if isinstance(step, Partial):
-            study = step.value
-            current = angle(study)
-            if study.runs:  # one file: the journal is in use, and may not be moved for a moment
-                write_bytes(folder / "uncertainty.json", json_bytes(budget_document(current)))
-            yield Partial(current)
-        else:
+    def events_of(step: Step) -> Iterator[Step]:
+        if not isinstance(step, Partial):
             yield step
+            return
+        current = angle(step.value)
+        if step.value.runs:  # one file: the journal is in use, and may not be moved for a moment
+            write_bytes(folder / "uncertainty.json", json_bytes(budget_document(current)))
+        yield Partial(current)
+
+    study = yield from as_events(study_repose(rows, folder, 1, executor), events_of)
     final = angle(study)
     write_study(study, folder)
     return final

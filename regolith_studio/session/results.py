@@ -50,8 +50,7 @@ class Results:
     - ``particle_descriptors``, ``fit_descriptors``, ``fit_errors``: of the particle, of `surface`, and the
       relative errors (Eq. 8) of the second.
     - ``coarsening_progress``: the newest step of the coarsening that runs or ran.
-    - ``best``: the newest step with a polyhedron, or the finished coarsening; read :attr:`polyhedron` and
-      :attr:`polyhedron_mesh`.
+    - ``best``: the newest step with a polyhedron, or the finished coarsening; read :attr:`polyhedron`.
     - ``coarsened``: the finished coarsening for the present choices; ``None`` while it runs.
     - ``loss_history``: (step, loss) pairs: thinned out while it runs, complete in the end.
     - ``against_particle``: the finished polyhedron of a fit against the particle itself; ``None`` where it
@@ -85,11 +84,6 @@ class Results:
     def polyhedron(self) -> Polyhedron | None:
         """The best polyhedron so far, about its own centre (``best.centre`` in the particle's frame)."""
         return self.best.polyhedron if self.best else None
-
-    @property
-    def polyhedron_mesh(self) -> Mesh | None:
-        """Its triangles where the particle lies."""
-        return self.best.mesh if self.best else None
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """What a chosen l_max means for the descriptors of a sample (section 3.1, Eq. 10, Fig. 3)."""
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from itertools import groupby
 from operator import itemgetter
 from typing import Any
@@ -65,7 +65,6 @@ class LmaxStudy:
     failures: tuple[tuple[str, str], ...] = ()
     confidence: float = 0.95
     seed: int = 0
-    _bands: dict[str, FloatArray] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         errors = np.array(self.errors, dtype=np.float64)
@@ -73,9 +72,9 @@ class LmaxStudy:
         errors.flags.writeable = False
         object.__setattr__(self, "errors", errors)
 
-    def __reduce__(self) -> tuple[Callable[..., "LmaxStudy"], tuple[Any, ...]]:
-        fields = (self.degrees, self.keys, self.names, self.groups, self.errors)
-        return LmaxStudy, (*fields, self.failures, self.confidence, self.seed)
+    @cached_property
+    def _bands(self) -> dict[str | None, FloatArray]:
+        return {}
 
     @property
     def group_names(self) -> tuple[str, ...]:
@@ -95,12 +94,11 @@ class LmaxStudy:
 
     def bands(self, group: str | None = None) -> FloatArray:
         """Ends of the bootstrap band over particles, shape (2, degrees, keys)."""
-        name = "" if group is None else f"group {group}"
-        if name not in self._bands:
+        if group not in self._bands:
             members = self.of_group(group)
             spread = pooled_rmsre(members, resampled_counts(len(members), self.seed))
-            self._bands[name] = band_of(spread, self.confidence)
-        return self._bands[name]
+            self._bands[group] = band_of(spread, self.confidence)
+        return self._bands[group]
 
     def n_used(self, group: str | None = None) -> tuple[int, ...]:
         """Number of particles with a fit at each degree."""
@@ -191,13 +189,12 @@ def errors_or_reason(mesh: Mesh, options: Mapping[str, Any]) -> FloatArray | str
 
 def _with_outcome(study: LmaxStudy, particle: Particle, outcome: FloatArray | str) -> LmaxStudy:
     if isinstance(outcome, str):
-        return replace(study, failures=(*study.failures, (particle.name, outcome)), _bands={})
+        return replace(study, failures=(*study.failures, (particle.name, outcome)))
     return replace(
         study,
         names=(*study.names, particle.name),
         groups=(*study.groups, particle.group),
         errors=np.concatenate([study.errors, outcome[None]]),
-        _bands={},
     )
 
 

@@ -7,18 +7,19 @@ from scipy.stats import wasserstein_distance
 from regolith_studio.dataset.representatives import (
     choose_representatives,
     curve_counts,
-    quality_curve,
+    quality_steps,
     quality_table,
     representation_error,
 )
 from regolith_studio.errors import InputError
+from regolith_studio.jobs.events import result_of
 
 from .test_representatives import population
 
 
 def test_that_a_curve_chooses_what_each_number_alone_would_choose() -> None:
     rows = population(200)
-    curve = quality_curve(rows, (3, 10, 25))
+    curve = result_of(quality_steps(rows, (3, 10, 25)))
     for choice, point in zip(curve.choices, curve.points, strict=True):
         alone = choose_representatives(rows, point.count)
         assert np.array_equal(choice.chosen, alone.chosen)
@@ -28,13 +29,13 @@ def test_that_a_curve_chooses_what_each_number_alone_would_choose() -> None:
 
 def test_that_every_particle_standing_for_itself_leaves_no_error() -> None:
     rows = population(60)
-    (point,) = quality_curve(rows, (60,)).points
+    (point,) = result_of(quality_steps(rows, (60,))).points
     assert max(point.errors.values()) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("weighting", ["number", "volume"])
 def test_that_more_representatives_come_closer_until_the_noise_is_reached(weighting: str) -> None:
-    curve = quality_curve(population(400), (1, 5, 20, 100, 400), weighting=weighting)
+    curve = result_of(quality_steps(population(400), (1, 5, 20, 100, 400), weighting=weighting))
     means = [point.mean for point in curve.points]
     assert means == sorted(means, reverse=True)
     assert curve.sufficient_count in ((20, 100, 400) if weighting == "number" else (5, 20, 100, 400))
@@ -65,11 +66,11 @@ def test_that_counts_fit_the_population_and_hold_the_wanted_number() -> None:
 
 def test_that_more_representatives_than_particles_are_refused() -> None:
     with pytest.raises(InputError, match="Between 1 and 20"):
-        quality_curve(population(20), (5, 21))
+        result_of(quality_steps(population(20), (5, 21)))
 
 
 def test_that_the_table_ends_with_the_noise() -> None:
-    curve = quality_curve(population(100), (1, 10))
+    curve = result_of(quality_steps(population(100), (1, 10)))
     table = quality_table(curve)
     assert [row[0] for row in table.rows] == [1, 10, None]
     assert table.rows[-1][1] == pytest.approx(curve.noise_mean)

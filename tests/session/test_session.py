@@ -66,7 +66,6 @@ def test_that_opening_selects_the_first_particle_and_computes_everything(opened:
     assert len(results.surface.faces) == 320
     assert results.coarsened is not None
     assert results.coarsened.n_facets == 20
-    assert results.polyhedron_mesh is not None
     assert set(results.fit_errors) == set(results.coarsened.errors)
     assert opened.tasks == ()
 

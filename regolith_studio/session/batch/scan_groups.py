@@ -6,7 +6,7 @@ versions is not extracted again, so that an interrupted run goes on where it end
 
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from regolith_studio.io.atomic import listed_hashes, staged_folder, write_bytes
 from regolith_studio.io.file_names import file_stem, name_key, path_inside
 from regolith_studio.io.own_files import read_json
 from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text, read_csv
-from regolith_studio.jobs.events import Started, Steps
+from regolith_studio.jobs.events import Started, Step, Steps, as_events
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import unfinished_file, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -113,16 +113,14 @@ def extract_groups(
 def _numbered(steps: Steps, name: str, number: int, count: int) -> Steps:
     """The steps of a scan, whose titles say which of all it is."""
     template = N_("{name} ({number} of {count}): {step}")
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            return end.value
+
+    def events_of(step: Step) -> Iterator[Step]:
         if isinstance(step, Started):
-            step = replace(
-                step, title=Message(template, name=name, number=number, count=count, step=step.title)
-            )
+            title = Message(template, name=name, number=number, count=count, step=step.title)
+            step = replace(step, title=title)
         yield step
+
+    return as_events(steps, events_of)
 
 
 def _is_extracted(folder: Path, given: VolumeInput, settings: GrainSettings) -> bool:
