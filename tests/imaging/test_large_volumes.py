@@ -21,6 +21,7 @@ from regolith_studio.imaging.settings import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.volume_slabs import ScratchArrays, unpacked
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_settings import VolumeInput
 
 path, kind, limit = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])
@@ -34,22 +35,10 @@ volumes = []
 with ScratchArrays(path.parent) as scratch:
     source = VolumeInput(path, 1.0, kind=kind).opened()
     if kind == "labels":
-        reading = unpacked(source, scratch)
-        while True:
-            try:
-                next(reading)
-            except StopIteration as end:
-                source = end.value
-                break
+        source = result_of(unpacked(source, scratch))
     if kind == "grey":
         settings = SegmentationSettings(DenoiseSettings("none"), ThresholdSettings("manual", 100.0))
-        steps = segmentation_steps(source, settings, scratch)
-        while True:
-            try:
-                next(steps)
-            except StopIteration as end:
-                source = end.value.labels
-                break
+        source = result_of(segmentation_steps(source, settings, scratch)).labels
     for step in extraction_steps(source, make=lambda made: made.particle.mesh.volume):
         volumes.append(step.made)
 print(json.dumps(volumes))

@@ -6,8 +6,7 @@ import pyvista as pv
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.contours import LowPass, _fill_links, _series, windowed_sinc
-from tests.filling import filled
+from regolith_studio.imaging.contours import LowPass, _series, windowed_sinc
 
 SPHERE = icosphere(4)
 LOW_PASS = LowPass(SPHERE.faces, len(SPHERE.vertices), 20)
@@ -46,12 +45,3 @@ def test_that_the_filter_is_the_series_of_chebyshev_polynomials_of_the_mean_of_n
     factor = np.polynomial.chebyshev.chebval((1 - 1 / 3) / 2, series)
     assert LowPass(faces, 4, 7)(corners, 0.4) == pytest.approx(factor * corners, abs=1e-12)
     assert series.sum() == pytest.approx(1.0)
-
-
-def test_that_the_links_of_a_corner_are_its_edges() -> None:
-    small = icosphere(1)
-    nothing = np.zeros(43, np.int64), np.zeros(42, np.int64), np.zeros(6 * len(small.faces), np.int64)
-    links = filled(_fill_links, (small.faces,), *nothing)[:3]
-    for corner, (a, b) in enumerate(zip(links[0], links[1], strict=False)):
-        edges = small.faces[(small.faces == corner).any(axis=1)]
-        assert set(links[2][a:b]) == set(edges.ravel()) - {corner}

@@ -11,11 +11,6 @@ from regolith_studio.imaging.volume import Volume
 LABELS = np.zeros((3, 4, 5), dtype=np.uint16)
 
 
-def test_that_a_volume_knows_its_shape() -> None:
-    volume = Volume(LABELS, (1.0, 2.0, 3.0), "labels", "test")
-    assert volume.shape == (3, 4, 5)
-
-
 def test_that_a_volume_is_locked_without_locking_the_array_of_its_maker() -> None:
     array = LABELS.copy()
     volume = Volume(array, (1.0, 1.0, 1.0), "labels", "test")

@@ -13,6 +13,7 @@ import pytest
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_settings import read_grain_settings
 from regolith_studio.jobs.particle_jobs import load_particles
 from regolith_studio.readers.coefficient_tables import read_coefficients
@@ -79,13 +80,7 @@ def test_that_odd_things_in_a_folder_cost_no_good_file(cube, tmp_path: Path) -> 
     os.mkfifo(tmp_path / "particles.csv")
     for kind in ("pipe", "folder", "dangling", "empty", "zeros"):
         ODD[kind][0](tmp_path / f"{kind}.stl")
-    steps = load_particles([tmp_path])
-    loaded = None
-    while loaded is None:
-        try:
-            next(steps)
-        except StopIteration as end:
-            loaded = end.value
+    loaded = result_of(load_particles([tmp_path]))
     assert [particle.name for particle in loaded.particles] == ["good"]
     told = sorted(Path(problem.path).stem for problem in loaded.problems)
     assert told == ["dangling", "empty", "pipe", "zeros"]

@@ -26,6 +26,7 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings, p
 from regolith_studio.imaging.settings import CleaningSettings, DenoiseSettings, ThresholdSettings
 from regolith_studio.imaging.volume import Volume, box_between
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SharedArray
+from regolith_studio.jobs.events import result_of
 
 PROBABLE = ThresholdSettings("probability", 0.5)
 THREE = (PixelClass("resin", False), PixelClass("bright mineral", True), PixelClass("dark mineral", True))
@@ -57,12 +58,7 @@ def painted_middle(balls: NDArray[np.int64]) -> Volume:
 
 
 def predicted(training: TrainingSet, volume: Volume) -> NDArray[np.uint8]:
-    steps = probability_map(train(training), volume, ScratchArrays())
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return np.asarray(end.value.array)
+    return np.asarray(result_of(probability_map(train(training), volume, ScratchArrays())).array)
 
 
 def test_that_features_are_the_filters_of_scipy() -> None:
