@@ -3,10 +3,12 @@
 import os
 import signal
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from unittest.mock import patch
 
 import pytest
+import typer
 
 REAL_DATA = Path(
     os.environ.get("REGOLITH_REAL_DATA", Path(__file__).resolve().parents[2] / "shared" / "data")
@@ -52,6 +54,13 @@ def kernels_are_compiled() -> Iterator[None]:
     from regolith_studio.jobs import compile_kernels
 
     with patch.object(compile_kernels, "_mark", return_value=None):
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def commands_are_built_once() -> Iterator[None]:
+    """Keep the commands: Typer builds all of them at each call, which takes 24 ms."""
+    with patch.object(typer.main, "get_command", cache(typer.main.get_command)):
         yield
 
 
