@@ -11,7 +11,7 @@ from regolith_studio.cli.options import (
     claim_json,
     claim_labels,
     option_of,
-    output_path,
+    output_option,
     usage_errors,
     with_dataclass_options,
 )
@@ -48,17 +48,7 @@ def train(
             "editors and ilastik keep it.",
         ),
     ],
-    output: Annotated[
-        Path,
-        typer.Option(
-            "--output",
-            "-o",
-            help="File of the classifier.",
-            metavar="FILE.json",
-            parser=output_path,
-            callback=claim_json,
-        ),
-    ],
+    output: Annotated[Path, output_option("File of the classifier.", "FILE.json", claim_json)],
     contents: VolumeOptions,
     labels_dataset: Annotated[
         str,
@@ -126,13 +116,10 @@ def map_scan(
     classifier: ClassifierFile,
     output: Annotated[
         Path,
-        typer.Option(
-            "--output",
-            "-o",
-            help="File for the probability of grain, 0 to 255, as TIFF, NRRD, HDF5 or OME-Zarr.",
-            metavar="FILE",
-            parser=output_path,
-            callback=claim_labels,
+        output_option(
+            "File for the probability of grain, 0 to 255, as TIFF, NRRD, HDF5 or OME-Zarr.",
+            "FILE",
+            claim_labels,
         ),
     ],
     contents: VolumeOptions,
@@ -161,14 +148,7 @@ def painted_labels(
     classifier: ClassifierFile,
     output: Annotated[
         Path,
-        typer.Option(
-            "--output",
-            "-o",
-            help="File for the painted voxels, as TIFF, NRRD, HDF5 or OME-Zarr.",
-            metavar="FILE",
-            parser=output_path,
-            callback=claim_labels,
-        ),
+        output_option("File for the painted voxels, as TIFF, NRRD, HDF5 or OME-Zarr.", "FILE", claim_labels),
     ],
     contents: VolumeOptions,
     json: Json = False,
@@ -200,17 +180,7 @@ def train_objects(
             "region of interest, and grain, several grains or artefact.",
         ),
     ],
-    output: Annotated[
-        Path,
-        typer.Option(
-            "--output",
-            "-o",
-            help="File of the object classifier.",
-            metavar="FILE.json",
-            parser=output_path,
-            callback=claim_json,
-        ),
-    ],
+    output: Annotated[Path, output_option("File of the object classifier.", "FILE.json", claim_json)],
     contents: VolumeOptions,
     grains: GrainOptions,
     json: Json = False,

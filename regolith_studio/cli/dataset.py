@@ -19,10 +19,11 @@ from regolith_studio.cli.options import (
     StoppingOptions,
     claim_file,
     exit_code,
-    output_path,
+    output_option,
     usage_errors,
     values,
     with_dataclass_options,
+    words,
 )
 from regolith_studio.cli.terminal import CommandGroup, print_errors, print_json, run_with_progress
 from regolith_studio.dataset.parameters import DatasetSettings, ExportSettings, RepresentativesSettings
@@ -190,15 +191,7 @@ def sample(
         ),
     ],
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="CSV file; printed to the terminal if omitted.",
-            metavar="FILE",
-            parser=output_path,
-            callback=claim_file,
-        ),
+        Path | None, output_option("CSV file; printed to the terminal if omitted.", "FILE", claim_file)
     ] = None,
     json: Json = False,
     seed: Seed = 0,
@@ -272,7 +265,7 @@ def export(
     from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder
 
     with usage_errors():
-        keys = [key.strip() for key in to.split(",") if key.strip()]
+        keys = words(to)
         chosen = chosen_exporters(keys)
         changes: dict[str, object] = dict(values(set_, "setting"))
         settings = ExportOptions(**settings_in(ExportSettings, exports), seed=seed).replaced(**changes)

@@ -1,4 +1,4 @@
-"""``generate``: virtual particles from a fitted sample, a fitted model or a material card."""
+"""``generate``, ``card``, ``match``: virtual particles, material cards, and how near materials are."""
 
 import re
 from pathlib import Path
@@ -16,7 +16,7 @@ from regolith_studio.cli.options import (
     claim_json,
     exit_code,
     mesh_path,
-    output_path,
+    output_option,
     usage_errors,
     values,
     with_dataclass_options,
@@ -98,14 +98,7 @@ Names = Annotated[
     ),
 ]
 ModelFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--save-model",
-        help="JSON file for the fitted model.",
-        metavar="MODEL.json",
-        parser=output_path,
-        callback=claim_json,
-    ),
+    Path | None, output_option("JSON file for the fitted model.", "MODEL.json", claim_json, "--save-model")
 ]
 
 
@@ -179,13 +172,8 @@ def generate(
 
 CardFile = Annotated[
     Path | None,
-    typer.Option(
-        "--output",
-        "-o",
-        help="JSON file of the card to write; without it a card is read and shown.",
-        metavar="CARD.json",
-        parser=output_path,
-        callback=claim_json,
+    output_option(
+        "JSON file of the card to write; without it a card is read and shown.", "CARD.json", claim_json
     ),
 ]
 
@@ -348,10 +336,7 @@ def match(
         result_of(found.written(output, mass))
     print_errors(problem.with_path for problem in found.problems)
     if json:
-        names = [column.name for column in table.columns]
-        print_json(
-            {"target": target, "materials": [dict(zip(names, row, strict=True)) for row in table.rows]}
-        )
+        print_json({"target": target, "materials": table.records})
     else:
         print_table(table)
         typer.echo(f"Nearest by itself: {found.match.nearest.name}. {table.notes[0]}")

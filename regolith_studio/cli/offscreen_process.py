@@ -1,8 +1,8 @@
 """Draw pictures in a separate process, because a failure of OpenGL may end the process."""
 
 import multiprocessing
-from collections.abc import Callable
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
 from regolith_studio.errors import MissingRequirement
@@ -30,13 +30,13 @@ def draw_three_views(
     if coarse is None:
         raise ValueError("there is no polyhedron to draw")
     fit = reconstruct(choices.fit_options.fit(particle.mesh, choices.l_max), choices.l_max, choices.level)
-    draw_in_process(_draw, (particle, fit, coarse, choices.l_max), path)
+    draw_in_process(f"{__name__}:_draw", (particle, fit, coarse, choices.l_max), path)
 
 
-def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path) -> None:
+def draw_in_process(draw: str, arguments: tuple[Any, ...], path: Path) -> None:
     """Call ``draw(*arguments, stage)`` in a fresh process; what it wrote to `stage` becomes `path`.
 
-    ``draw``: function of a module, which is imported in the new process.
+    ``draw``: ``module:function``, which the new process alone imports.
     """
     stage = path.with_name(f".{path.stem}-drawn{path.suffix}")
     context = multiprocessing.get_context("spawn")
@@ -59,11 +59,11 @@ def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path:
     raise MissingRequirement("This machine cannot draw in three dimensions; `check` tells more.")
 
 
-def _draw_and_report(sending: "Connection", draw: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+def _draw_and_report(sending: "Connection", draw: str, arguments: tuple[Any, ...]) -> None:
     """Draw; what the file system refuses is raised where the picture is waited for."""
     end_with_parent()
     try:
-        draw(*arguments)
+        resolve_name(draw)(*arguments)
     except OSError as error:
         sending.send(error)
         raise SystemExit(1) from None

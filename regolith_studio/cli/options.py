@@ -229,14 +229,13 @@ def _check_folder(folder: Path) -> None:
         raise FileError(f"The folder {existing} cannot be written ({reason}).")
 
 
-_FOLDER = typer.Option(
-    "--output",
-    "-o",
-    help="Folder to write.",
-    metavar="DIR",
-    parser=output_path,
-    callback=claim_folder,
-)
+def output_option(help_: str, metavar: str, claim: Callable[..., Any], *flags: str) -> Any:
+    """The option of a place for results, which `claim` checks; ``--output`` unless named."""
+    flags = flags or ("--output", "-o")
+    return typer.Option(*flags, help=help_, metavar=metavar, parser=output_path, callback=claim)
+
+
+_FOLDER = output_option("Folder to write.", "DIR", claim_folder)
 Folder = Annotated[Path, _FOLDER]
 OptionalFolder = Annotated[Path | None, _FOLDER]
 LMax = Annotated[int, option_of(FitSurfaceSettings, "l_max")]
@@ -298,6 +297,11 @@ def numbers(entries: list[str] | None, what: str) -> dict[str, float]:
 def values(entries: list[str] | None, what: str) -> dict[str, bool | int | float | str]:
     """``KEY=VALUE`` entries, each value as the simplest type that can hold it."""
     return {key: _simplest(text) for key, text in _pairs(entries, what)}
+
+
+def words(text: str) -> tuple[str, ...]:
+    """What stands between commas."""
+    return tuple(word.strip() for word in text.split(",") if word.strip())
 
 
 def whole_numbers(text: str, low: int, high: int) -> tuple[int, ...]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -24,7 +24,7 @@ from regolith_studio.cli.options import (
     claim_folder,
     claim_json,
     exit_code,
-    output_path,
+    output_option,
     usage_errors,
     with_dataclass_options,
 )
@@ -73,14 +73,7 @@ TableDegree = Annotated[
     ),
 ]
 Csv = Annotated[
-    Path | None,
-    typer.Option(
-        "--csv",
-        help="CSV file for all descriptors with their units.",
-        metavar="FILE",
-        parser=output_path,
-        callback=claim_file,
-    ),
+    Path | None, output_option("CSV file for all descriptors with their units.", "FILE", claim_file, "--csv")
 ]
 
 
@@ -143,7 +136,7 @@ def describe(
     table = _statistics(entries, weighting, border_weights) if statistics else None
     if json:
         rows = [described(particle, each) for particle, each in pairs]
-        print_json(rows if table is None else {"particles": rows, "statistics": _as_rows(table)})
+        print_json(rows if table is None else {"particles": rows, "statistics": table.records})
     else:
         print_table(short_table(loaded.particles, facts))
         if table is not None:
@@ -162,11 +155,6 @@ def _statistics(entries: "list[ParticleEntry]", weighting: str, border_weights: 
     return statistics_of_keys(entries, keys, weighting, border_weights)
 
 
-def _as_rows(table: "Table") -> list[dict[str, Any]]:
-    names = [column.name for column in table.columns]
-    return [dict(zip(names, row, strict=True)) for row in table.rows]
-
-
 def _write_csv(path: Path, entries: "list[ParticleEntry]") -> None:
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
@@ -177,27 +165,10 @@ def _write_csv(path: Path, entries: "list[ParticleEntry]") -> None:
 
 _MOST_LINES = 5
 """Fits that are far off that are named one by one."""
-FitFile = Annotated[
-    Path,
-    typer.Option(
-        "--output",
-        "-o",
-        help="JSON file of the fits to write.",
-        metavar="FIT.json",
-        show_default=False,
-        parser=output_path,
-        callback=claim_json,
-    ),
-]
+FitFile = Annotated[Path, output_option("JSON file of the fits to write.", "FIT.json", claim_json)]
 Surfaces = Annotated[
     Path | None,
-    typer.Option(
-        "--surfaces",
-        help="Folder for the surface of each fit as STL.",
-        metavar="DIR",
-        parser=output_path,
-        callback=claim_folder,
-    ),
+    output_option("Folder for the surface of each fit as STL.", "DIR", claim_folder, "--surfaces"),
 ]
 
 

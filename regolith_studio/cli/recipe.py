@@ -17,8 +17,6 @@ from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.errors import RegolithError
 
 if TYPE_CHECKING:
-    from regolith_studio.dem.snapshot import ParticleState
-    from regolith_studio.geometry.arrays import FloatArray
     from regolith_studio.jobs.events import Steps
     from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.run_recipe import RecipeRun
@@ -206,12 +204,4 @@ def _heap(dataset: Path, folder: Path, seed: int, problems: list[str]) -> "Steps
         (folder / TIMES).unlink()
         title = f"Illustration: {N_HEAP} particles are too few for an angle of repose"
         given = (read_shapes(folder), done.ending.particles, request.case.test, title)
-        draw_in_process(_draw_heap, given, folder / HEAP_PICTURE)
-
-
-def _draw_heap(
-    shapes: "tuple[tuple[FloatArray, ...], ...]", pile: "ParticleState", test: Any, title: str, path: Path
-) -> None:
-    from regolith_studio.scene.figure import heap_picture
-
-    heap_picture(shapes, pile, test, title, path)
+        draw_in_process("regolith_studio.scene.figure:heap_picture", given, folder / HEAP_PICTURE)

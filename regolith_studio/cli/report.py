@@ -24,12 +24,10 @@ from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.session.report.settings import ReportSettings
 
 if TYPE_CHECKING:
-    from regolith_studio.geometry.mesh import Mesh
-    from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.readers.particles import LoadedParticles
     from regolith_studio.session.report.write import WrittenReport
 
-
+ANIMATION = "regolith_studio.scene.animation"
 Animation = Annotated[
     bool,
     typer.Option(
@@ -71,11 +69,13 @@ def gallery(
                 continue
             stem = file_stem(particle.name)
             names = [f"{stem}_degrees.png"]
-            draw_in_process(_draw_picture, (particle.mesh, fit, wanted), stage / names[0])
+            draw_in_process(f"{ANIMATION}:degree_picture", (particle.mesh, fit, wanted), stage / names[0])
             if animation:
                 names.append(f"{stem}_degrees.gif")
                 draw_in_process(
-                    _draw_animation, (particle.mesh, fit, range(request.l_max + 1)), stage / names[1]
+                    f"{ANIMATION}:degree_animation",
+                    (particle.mesh, fit, range(request.l_max + 1)),
+                    stage / names[1],
                 )
             drawn += names
     if json:
@@ -83,18 +83,6 @@ def gallery(
     else:
         typer.echo(f"{len(drawn)} files in {output}")
     raise typer.Exit(exit_code(loaded, failed))
-
-
-def _draw_picture(particle: "Mesh", fit: "HarmonicFit", degrees: tuple[int, ...], path: Path) -> None:
-    from regolith_studio.scene.animation import degree_picture
-
-    degree_picture(particle, fit, degrees, path)
-
-
-def _draw_animation(particle: "Mesh", fit: "HarmonicFit", degrees: range, path: Path) -> None:
-    from regolith_studio.scene.animation import degree_animation
-
-    degree_animation(particle, fit, degrees, path)
 
 
 Samples = Annotated[

@@ -1,5 +1,6 @@
 """``repose``: the angle of repose of simulated or imported particles (sections 2.6 and 3.3)."""
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,9 +13,11 @@ from regolith_studio.cli.options import (
     Json,
     Seed,
     claim_folder,
-    output_path,
+    option_of,
+    output_option,
     usage_errors,
     with_dataclass_options,
+    words,
 )
 from regolith_studio.cli.repose_calibrate import calibrate
 from regolith_studio.cli.repose_options import (
@@ -33,6 +36,7 @@ from regolith_studio.cli.terminal import (
     print_table,
     run_with_progress,
 )
+from regolith_studio.dataset.parameters import DrumRotation, rpm_of
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun
@@ -45,14 +49,7 @@ app = typer.Typer(
 )
 Figures = Annotated[
     Path | None,
-    typer.Option(
-        "--output",
-        "-o",
-        help="Folder for repose.json and the figure of the sections (Fig. 9).",
-        metavar="DIR",
-        parser=output_path,
-        callback=claim_folder,
-    ),
+    output_option("Folder for repose.json and the figure of the sections (Fig. 9).", "DIR", claim_folder),
 ]
 Base = Annotated[
     float | None,
@@ -120,6 +117,47 @@ Bond = Annotated[
     ),
 ]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an existing run in the folder.")]
+DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SingleRunOptions:
+    """Options of one run: which particles it takes, and how it is done."""
+
+    particles: Particles = 1000
+    coarse_graining: CoarseGraining = 0.0
+    spheres: Spheres = False
+    bond: Bond = 0.0
+    filling: Filling = None
+    overwrite: Overwrite = False
+    jobs: Jobs = 1
+    seed: Seed = 0
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """Fields of ``ReposeCase``."""
+        return {
+            "n_particles": self.particles,
+            "coarse_graining": self.coarse_graining,
+            "shapes": "spheres" if self.spheres else "polyhedra",
+            "bond_number": self.bond,
+            "seed": self.seed,
+        }
+
+    def simulate(self, dataset: Path, output: Path, request: "ReposeRequest") -> "ReposeRun":
+        """Run a case, with its notes before and after."""
+        from regolith_studio.dem.case import scaling_report
+        from regolith_studio.jobs.repose_jobs import prepared_case, simulate_prepared
+        from regolith_studio.jobs.runners.process_pool import cores
+
+        threads = self.jobs or cores()
+        request = replace(request, filling=self.filling, overwrite=self.overwrite, threads=threads)
+        prepared = prepared_case(dataset, request)
+        before = [*scaling_report(prepared).sentences, *prepared.filling_notes]
+        print_errors(before)
+        done: ReposeRun = run_with_progress(simulate_prepared(prepared, output, request))
+        print_errors(note for note in run_notes(done.document) if note not in before)
+        return done
 
 
 app.command("calibrate")(calibrate)
@@ -235,32 +273,17 @@ def metres_in(unit: str) -> float:
 @with_dataclass_options
 def run(
     *,
-    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
+    dataset: DatasetFolder,
     output: Folder,
-    particles: Particles = 1000,
     how: CaseOptions,
-    coarse_graining: CoarseGraining = 0.0,
-    spheres: Spheres = False,
     cohesion: Annotated[
         str, typer.Option("--cohesion", help="Cohesion: none, given or scaled.", metavar="C")
     ] = "none",
-    bond: Bond = 0.0,
-    filling: Filling = None,
-    overwrite: Overwrite = False,
+    single: SingleRunOptions,
     json: Json = False,
-    jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
-    request = how.request(
-        n_particles=particles,
-        coarse_graining=coarse_graining,
-        shapes="spheres" if spheres else "polyhedra",
-        cohesion=cohesion,
-        bond_number=bond,
-        seed=seed,
-    )
-    done = _simulate(dataset, output, request, filling, overwrite, jobs)
+    done = single.simulate(dataset, output, how.request(cohesion=cohesion, **single.case))
     if json:
         print_json(done.document)
     else:
@@ -271,11 +294,10 @@ def run(
 @with_dataclass_options
 def drum(
     *,
-    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
+    dataset: DatasetFolder,
     output: Folder,
     rpm: Annotated[
-        float | None,
-        typer.Option("--rpm", min=1e-3, max=1e5, help="Revolutions in a minute; 10 if omitted.", metavar="N"),
+        float | None, option_of(DrumRotation, "rpm", tip="Revolutions in a minute; 10 if omitted.")
     ] = None,
     froude: Annotated[
         float | None,
@@ -288,17 +310,11 @@ def drum(
         ),
     ] = None,
     turns: Annotated[
-        float,
-        typer.Option(
-            "--turns", min=0.05, max=1000.0, help="Turns that are measured, after a quarter.", metavar="N"
-        ),
-    ] = 1.0,
+        float, option_of(DrumRotation, "turns", tip="Turns that are measured, after a quarter.")
+    ] = DrumRotation.turns,
     moments: Annotated[
-        int,
-        typer.Option(
-            "--moments", min=20, max=100_000, help="Moments at which the surface is measured.", metavar="N"
-        ),
-    ] = 300,
+        int, option_of(DrumRotation, "moments", tip="Moments at which the surface is measured.")
+    ] = DrumRotation.moments,
     measured: Annotated[
         float | None,
         typer.Option(
@@ -312,38 +328,22 @@ def drum(
     measured_error: Annotated[
         float, typer.Option("--measured-error", min=0.0, max=45.0, help="Its standard error.", metavar="E")
     ] = 1.0,
-    particles: Particles = 1000,
     how: DrumOptions,
-    coarse_graining: CoarseGraining = 0.0,
-    spheres: Spheres = False,
-    bond: Bond = 0.0,
-    filling: Filling = None,
-    overwrite: Overwrite = False,
+    single: SingleRunOptions,
     json: Json = False,
-    jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Simulate a rotating drum with particles of a dataset; measure dynamic, upper and lower angle."""
-    from dataclasses import replace
-
-    from regolith_studio.dataset.parameters import DrumRotation, rpm_of
     from regolith_studio.dem.drum_angle import DrumMeasurement, compare_angles
 
     if rpm is not None and froude is not None:
         raise typer.BadParameter("Give either --rpm or --froude.")
-    request = how.request(
-        {"rpm": 10.0 if rpm is None else rpm, "turns": turns, "moments": moments},
-        n_particles=particles,
-        coarse_graining=coarse_graining,
-        shapes="spheres" if spheres else "polyhedra",
-        bond_number=bond,
-        seed=seed,
-    )
+    rotation = {"rpm": DrumRotation.rpm if rpm is None else rpm, "turns": turns, "moments": moments}
+    request = how.request(rotation, **single.case)
     if froude is not None:
         with usage_errors():
             turning = DrumRotation(rpm_of(froude, request.case.test), turns, moments)
         request = replace(request, case=replace(request.case, drum=turning))
-    done = _simulate(dataset, output, request, filling, overwrite, jobs)
+    done = single.simulate(dataset, output, request)
     document, angles = dict(done.document), done.measurement
     if measured is not None and isinstance(angles, DrumMeasurement):
         document["measured"] = compare_angles(angles.angle, angles.interval, measured, measured_error)
@@ -355,30 +355,6 @@ def drum(
         low, high = document["measured"]["interval_deg"]
         difference = document["measured"]["difference_deg"]
         typer.echo(f"less the measured    {difference:+.1f} deg ({low:+.1f} to {high:+.1f}, 95 % interval)")
-
-
-def _simulate(
-    dataset: Path,
-    output: Path,
-    request: "ReposeRequest",
-    filling: Path | None,
-    overwrite: bool,
-    jobs: int,
-) -> "ReposeRun":
-    """Run a case, with its notes before and after."""
-    from dataclasses import replace
-
-    from regolith_studio.dem.case import scaling_report
-    from regolith_studio.jobs.repose_jobs import prepared_case, simulate_prepared
-    from regolith_studio.jobs.runners.process_pool import cores
-
-    request = replace(request, filling=filling, overwrite=overwrite, threads=jobs or cores())
-    prepared = prepared_case(dataset, request)
-    before = [*scaling_report(prepared).sentences, *prepared.filling_notes]
-    print_errors(before)
-    done: ReposeRun = run_with_progress(simulate_prepared(prepared, output, request))
-    print_errors(note for note in run_notes(done.document) if note not in before)
-    return done
 
 
 @app.command("study")
@@ -516,7 +492,7 @@ def _statistics(against: str, folders: list[Path]) -> tuple[list[str], dict[str,
     from regolith_studio.dataset.folder_io import read_dataset
     from regolith_studio.studies.repose import fit_response_surface, shape_statistics
 
-    keys = [key.strip() for key in against.split(",") if key.strip()]
+    keys = list(words(against))
     if not keys:
         return [], {}
     names = [folder.name for folder in folders]

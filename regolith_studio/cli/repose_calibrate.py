@@ -5,9 +5,18 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors, with_dataclass_options
+from regolith_studio.cli.options import (
+    Folder,
+    Jobs,
+    Json,
+    Seed,
+    option_of,
+    usage_errors,
+    with_dataclass_options,
+)
 from regolith_studio.cli.repose_options import CaseOptions, Particles, check_results_folder, varied_values
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+from regolith_studio.dataset.parameters import DrumRotation
 
 RANGE_FORM = "a parameter and its range as KEY=LOW,HIGH"
 
@@ -65,8 +74,8 @@ def calibrate(
         typer.Option("--drum-angle-error", min=0.0, max=45.0, help="Its standard error.", metavar="E"),
     ] = 1.0,
     rpm: Annotated[
-        float, typer.Option("--rpm", min=1e-3, max=1e5, help="Of that drum, in a minute.", metavar="N")
-    ] = 10.0,
+        float, option_of(DrumRotation, "rpm", tip="Of that drum, in a minute.")
+    ] = DrumRotation.rpm,
     parameter: Annotated[
         list[str] | None,
         typer.Option(
@@ -88,7 +97,6 @@ def calibrate(
     """Find contact parameters that give a wanted angle of repose; resumes a stopped calibration."""
     from dataclasses import replace
 
-    from regolith_studio.dataset.parameters import DrumRotation
     from regolith_studio.jobs.repose_calibration import (
         DEFAULT_RANGES,
         ReposeCalibrationRequest,

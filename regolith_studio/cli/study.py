@@ -26,6 +26,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     whole_numbers,
     with_dataclass_options,
+    words,
 )
 from regolith_studio.cli.repose_options import Contact, EngineKey, Measure, Particles, Test
 from regolith_studio.cli.terminal import (
@@ -295,12 +296,12 @@ def population(
     steps = partial(
         study_population,
         source.content,
-        _words(models) or None,
+        words(models) or None,
         l_max=l_max,
         n_draws=draws or None,
         n_splits=splits,
         n_repeats=repeats,
-        keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
+        keys=tuple(CATALOGUE) if descriptors == "all" else words(descriptors) or KEYS,
         seed=run.seed,
     )
     study = run.finish("population_study", steps, output)
@@ -321,10 +322,6 @@ def _rows(
     added = (COMPOUND,) if compound and COMPOUND not in chosen else ()
     with usage_errors():
         return chosen_rows((*chosen, *added), choices)
-
-
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(word.strip() for word in text.split(",") if word.strip())
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -28,62 +28,34 @@ if TYPE_CHECKING:
 class VolumeOptions:
     """What a volume file does not say of itself."""
 
-    kind: Annotated[
-        str,
-        typer.Option("--kind", help="Kind of volume: labels or grey; detected if omitted.", metavar="KIND"),
-    ] = ""
-    voxel_size: Annotated[
-        str,
-        typer.Option(
-            "--voxel-size",
-            help="Edge of a voxel, or X,Y,Z, in the unit of --unit; read from the file if omitted.",
-            metavar="SIZE",
-        ),
-    ] = ""
-    unit: Annotated[
-        str, typer.Option("--unit", help="Unit of the voxel size: um, mm, m, nm or cm.", metavar="U")
-    ] = ""
-    dataset: Annotated[
-        str,
-        typer.Option(
-            "--dataset",
-            help="Dataset of an HDF5 file, level of an OME-Zarr, or series of a folder of slices or DICOM.",
-            metavar="NAME",
-        ),
-    ] = ""
-    axes: Annotated[
-        str,
-        typer.Option(
-            "--axes",
-            help="Order of the axes of NPY and HDF5 arrays; zyx (slices first) if omitted.",
-            metavar="AXES",
-        ),
-    ] = ""
-    allow_gaps: Annotated[
-        bool,
-        typer.Option("--allow-gaps", help="Read slices that are absent from a folder as empty ones."),
-    ] = False
-    shape: Annotated[
-        str,
-        typer.Option("--shape", help="Number of voxels of a raw file along x, y and z.", metavar="NX,NY,NZ"),
-    ] = ""
-    dtype: Annotated[
-        str,
-        typer.Option("--dtype", help="Data type of a raw file: uint8, uint16, float32, ...", metavar="TYPE"),
-    ] = "uint8"
-    byte_order: Annotated[
-        str, typer.Option("--byte-order", help="Byte order of a raw file: little or big.", metavar="ORDER")
-    ] = "little"
-    offset: Annotated[
-        int,
-        typer.Option(
-            "--offset",
-            min=0,
-            max=2**63 - 1,
-            help="Number of bytes before the first voxel of a raw file.",
-            metavar="N",
-        ),
-    ] = 0
+    kind: str = setting("", "Kind", "Kind of volume: labels or grey; detected if omitted.", metavar="KIND")
+    voxel_size: str = setting(
+        "",
+        "Voxel size",
+        "Edge of a voxel, or X,Y,Z, in the unit of --unit; read from the file if omitted.",
+        metavar="SIZE",
+    )
+    unit: str = setting("", "Unit", "Unit of the voxel size: um, mm, m, nm or cm.", metavar="U")
+    dataset: str = setting(
+        "",
+        "Dataset",
+        "Dataset of an HDF5 file, level of an OME-Zarr, or series of a folder of slices or DICOM.",
+        metavar="NAME",
+    )
+    axes: str = setting(
+        "", "Axes", "Order of the axes of NPY and HDF5 arrays; zyx (slices first) if omitted.", metavar="AXES"
+    )
+    allow_gaps: bool = setting(False, "Gaps", "Read slices that are absent from a folder as empty ones.")
+    shape: str = setting("", "Shape", "Number of voxels of a raw file along x, y and z.", metavar="NX,NY,NZ")
+    dtype: str = setting(
+        "uint8", "Type", "Data type of a raw file: uint8, uint16, float32, ...", metavar="TYPE"
+    )
+    byte_order: str = setting(
+        "little", "Byte order", "Byte order of a raw file: little or big.", metavar="ORDER"
+    )
+    offset: int = setting(
+        0, "Offset", "Number of bytes before the first voxel of a raw file.", minimum=0, maximum=2**63 - 1
+    )
 
     def of(self, volume: Path) -> "VolumeInput":
         """The volume with what the options say of it; a wrong one is bad use."""
@@ -118,24 +90,20 @@ class GrainOptions:
         "connected to some from P on.",
         metavar="HOW",
     )
-    classifier: Annotated[
-        Path | None,
-        typer.Option(
-            "--classifier",
-            help="Classifier that makes a probability map of a grey volume, as `classify train` or the "
-            "window writes it; the threshold is then probability:0.5 if omitted.",
-            metavar="FILE",
-        ),
-    ] = None
-    objects: Annotated[
-        Path | None,
-        typer.Option(
-            "--objects",
-            help="Object classifier that keeps, splits again or drops the grains that were found, as "
-            "`classify objects` or the window writes it.",
-            metavar="FILE",
-        ),
-    ] = None
+    classifier: Path | None = setting(
+        None,
+        "Classifier",
+        "Classifier that makes a probability map of a grey volume, as `classify train` or the window writes "
+        "it; the threshold is then probability:0.5 if omitted.",
+        metavar="FILE",
+    )
+    objects: Path | None = setting(
+        None,
+        "Object classifier",
+        "Object classifier that keeps, splits again or drops the grains that were found, as `classify "
+        "objects` or the window writes it.",
+        metavar="FILE",
+    )
     dark: bool = setting_of(ThresholdSettings, "dark")
     opening: int = setting_of(CleaningSettings, "opening")
     closing: int = setting_of(CleaningSettings, "closing")

@@ -76,6 +76,12 @@ class Table:
                 return tuple(row[index] for row in self.rows)
         raise KeyError(name)
 
+    @property
+    def records(self) -> list[dict[str, Cell]]:
+        """Each row with its cells by the names of the columns."""
+        names = [column.name for column in self.columns]
+        return [dict(zip(names, row, strict=True)) for row in self.rows]
+
 
 def csv_text(table: Table, separator: str = ",") -> str:
     """The table as CSV: one header line (``name [unit]``), then the rows; missing values are empty."""
@@ -100,12 +106,11 @@ def read_csv(lines: Iterable[str]) -> Iterator[dict[str, str]]:
 
 def json_text(table: Table) -> str:
     """The table as JSON: title, notes, columns with units, and one object a row."""
-    names = [column.name for column in table.columns]
     document = {
         "title": table.title,
         "notes": list(table.notes),
         "columns": [{"name": column.name, "unit": column.unit} for column in table.columns],
-        "rows": [dict(zip(names, row, strict=True)) for row in table.rows],
+        "rows": table.records,
     }
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 

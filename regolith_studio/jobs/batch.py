@@ -1,7 +1,6 @@
 """A large batch in chunks: each is written to a checkpoint as soon as it is done, and none is done twice."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -32,22 +31,9 @@ MakeJob = Callable[[Sequence[int]], Job]
 """Makes the job of a chunk from the indices of its items; the job returns a `CheckpointRecord` for each."""
 
 
-@dataclass(frozen=True)
-class Chunk:
-    """Items `first` to `first + count - 1`."""
-
-    first: int
-    count: int
-
-    @property
-    def indices(self) -> range:
-        """Of its items."""
-        return range(self.first, self.first + self.count)
-
-
-def chunks_of(n_items: int, size: int) -> tuple[Chunk, ...]:
-    """The items in chunks of `size`, the last one perhaps smaller."""
-    return tuple(Chunk(first, min(size, n_items - first)) for first in range(0, n_items, size))
+def chunks_of(n_items: int, size: int) -> tuple[range, ...]:
+    """The indices of the items in chunks of `size`, the last one perhaps smaller."""
+    return tuple(range(first, min(first + size, n_items)) for first in range(0, n_items, size))
 
 
 def chunk_size(n_items: int) -> int:
@@ -90,14 +76,14 @@ class Batch:
         return len(self._done)
 
     @property
-    def missing(self) -> tuple[Chunk, ...]:
+    def missing(self) -> tuple[range, ...]:
         """Chunks that are still to be done."""
-        return tuple(chunk for chunk in self._chunks if not self._done.issuperset(chunk.indices))
+        return tuple(chunk for chunk in self._chunks if not self._done.issuperset(chunk))
 
-    def store(self, chunk: Chunk, records: Sequence[CheckpointRecord]) -> None:
+    def store(self, chunk: range, records: Sequence[CheckpointRecord]) -> None:
         """Write the results of the items of a chunk that are not there yet."""
         self.checkpoint.add(each for each in records if each.index not in self._done)
-        self._done.update(chunk.indices)
+        self._done.update(chunk)
 
 
 def run_batch(
@@ -116,7 +102,7 @@ def run_batch(
     rate = ProgressRate(batch.n_items, batch.n_done)
     missing = batch.missing
     yield Progress(rate.done, rate.total, "")
-    answers = executor.as_completed(make_job(chunk.indices) for chunk in missing)
+    answers = executor.as_completed(make_job(chunk) for chunk in missing)
     for answer in answers:
         if answer is not None:
             number, result = answer
@@ -128,14 +114,14 @@ def run_batch(
 
 
 def _records_of(
-    chunk: Chunk, result: JobResult, make_job: MakeJob, executor: Executor
+    chunk: range, result: JobResult, make_job: MakeJob, executor: Executor
 ) -> Generator[Step, None, Sequence[CheckpointRecord]]:
     """The records of a chunk, however its job ended."""
     match result:
         case Finished(value):
             return list(value)
-        case Failed(sentence) if chunk.count == 1:
-            return [CheckpointRecord(chunk.first, {LOST: sentence})]
+        case Failed(sentence) if len(chunk) == 1:
+            return [CheckpointRecord(chunk.start, {LOST: sentence})]
         case Failed():
             return (yield from _one_by_one(chunk, make_job, executor))
         case Stopped(reason) if reason:
@@ -145,12 +131,12 @@ def _records_of(
 
 
 def _one_by_one(
-    chunk: Chunk, make_job: MakeJob, executor: Executor
+    chunk: range, make_job: MakeJob, executor: Executor
 ) -> Generator[Step, None, Sequence[CheckpointRecord]]:
     records: list[CheckpointRecord] = []
-    results = _results(executor, [make_job([index]) for index in chunk.indices])
-    for index, result in zip(chunk.indices, results, strict=True):
-        records += yield from _records_of(Chunk(index, 1), result, make_job, executor)
+    results = _results(executor, [make_job([index]) for index in chunk])
+    for index, result in zip(chunk, results, strict=True):
+        records += yield from _records_of(range(index, index + 1), result, make_job, executor)
     return records
 
 

@@ -308,7 +308,8 @@ def dataset_of(
     if not good:
         first = next((each.problem for each in outcomes), "there are no particles")
         raise DatasetError(f"No particle could be coarsened, so there is no dataset: {first}")
-    source = _provenance_of(outcomes, request, preset)
+    fitted = [each.coefficients for each in outcomes if each.coarsened and each.coefficients]
+    source = dataset_provenance(fitted, request, preset)
     weighting: Weighting = "number"
     classes: list[ShapeClass] = [singleton_class(particle) for particle, _ in good]
     if chosen is not None:
@@ -326,15 +327,6 @@ def dataset_of(
         return dataset
     known = known.model_copy(update={"errors": polyhedra_errors(dataset, known)})
     return replace(dataset, provenance=replace(dataset.provenance, representation=known))
-
-
-def _provenance_of(
-    outcomes: Sequence[CoarsenedParticle], request: CoarseningRequest, preset: str | None
-) -> Provenance:
-    """How the shapes came about, in the words of section 2.5."""
-    return dataset_provenance(
-        [each.coefficients for each in outcomes if each.coarsened and each.coefficients], request, preset
-    )
 
 
 def dataset_provenance(

@@ -122,10 +122,7 @@ def source_of_fits(particles: Sequence[Particle], fits: Sequence[HarmonicFit | s
 def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
     """Fit the model that a request names to a source; returns a ``FittedModel``.
 
-    Raises
-    ------
-    InputError
-        If source and request do not go together, or the model cannot be fitted.
+    Raises InputError if they do not go together, or the model cannot be fitted.
     """
     content = source.content
     yield from compile_first("model")

@@ -6,13 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from regolith_studio.errors import FileError, InputError, RegolithError
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.messages import N_
+from regolith_studio.jobs.events import Steps
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, TableConvention
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.particles import FileProblem, LoadedParticles, find_files, sample_particles
+from regolith_studio.readers.particles import LoadedParticles, find_files, sample_particles
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.session.recipe import Population, Recipe, VolumeEntry
 
@@ -169,7 +168,7 @@ def restore_particles(recipe: Recipe, base: Path) -> Steps:
     ``base``: folder that relative files are looked up in.
     """
     from regolith_studio.jobs.executor import Executor
-    from regolith_studio.session.batch.inputs import BatchInputs
+    from regolith_studio.session.batch.inputs import BatchInputs, read_members
     from regolith_studio.session.batch.preprocessing import prepare_inputs
 
     if recipe.population is not None and recipe.population.n > MAX_RESTORED:
@@ -183,24 +182,14 @@ def restore_particles(recipe: Recipe, base: Path) -> Steps:
         )
         items = BatchInputs.of(recipe, base.absolute(), prepared)
         refs = _References(recipe, base.absolute(), prepared)
-        return (yield from _read_particles(items.members, list(items.problems), refs))
-
-
-def _read_particles(
-    members: Sequence["BatchInput"], problems: list[FileProblem], refs: "_References"
-) -> Steps:
-    yield Started(N_("Restoring particles"), len(members))
-    restored: list[tuple[Particle, ParticleRef]] = []
-    for number, item in enumerate(members, start=1):
-        try:
-            restored.append((item.particle(), refs.of(item)))
-        except RegolithError as error:
-            problems.append(FileProblem(item.name, str(error)))
-        yield Progress(number, len(members), item.name)
-    if not restored:
+        problems = list(items.problems)
+        read = yield from read_members(items.members, problems)
+    if not read:
         raise FileError(problems[0].sentence if problems else "There is no particle in the recipe.")
-    particles, found_refs = zip(*restored, strict=True)
-    return RestoredParticles(LoadedParticles(particles, tuple(problems)), found_refs)
+    particles = tuple(particle for _, particle in read)
+    return RestoredParticles(
+        LoadedParticles(particles, tuple(problems)), tuple(refs.of(item) for item, _ in read)
+    )
 
 
 class _References:

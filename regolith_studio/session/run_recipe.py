@@ -27,27 +27,32 @@ from regolith_studio.io.file_names import file_stem, unique_name
 from regolith_studio.io.own_files import read_json
 from regolith_studio.jobs.batch import LOST, Batch, run_batch
 from regolith_studio.jobs.compile_kernels import compile_first_for
-from regolith_studio.jobs.dataset_jobs import dataset_provenance
+from regolith_studio.jobs.dataset_jobs import (
+    DatasetOptions,
+    build_dataset_folder,
+    dataset_provenance,
+    export_dataset_folder,
+)
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, study_coarsening, study_lmax
 from regolith_studio.messages import N_
 from regolith_studio.readers.archives import archive_of
 from regolith_studio.readers.particles import left_out
-from regolith_studio.session.batch.inputs import BatchInputs, FileInput
+from regolith_studio.session.batch.inputs import BatchInputs, FileInput, read_members
 from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
 from regolith_studio.session.batch.preprocessing import PreparedInputs, clear_prepared_inputs, prepare_inputs
 from regolith_studio.session.batch.writers import (
     ResultWriter,
     RunStatistics,
-    build_dataset_step,
     check_dataset_request,
     descriptor_writer,
-    export_dataset_step,
+    export_options,
     failure_writer,
     fit_writer,
     mesh_writer,
     n_failures,
+    representatives_request,
     shapes_of,
     time_writer,
     write_library,
@@ -59,7 +64,7 @@ from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe, Representatives
 
 Part = Generator[Step, None, Any]
-CHECKPOINT, PREPARED_FOLDER = "checkpoint.sqlite", "prepared"
+CHECKPOINT, PREPARED_FOLDER, DATASET = "checkpoint.sqlite", "prepared", "dataset"
 ENDED = "ended"
 """Note of a run that has ended: its problems and notes."""
 
@@ -193,7 +198,7 @@ def _check_size(recipe: Recipe, n_particles: int) -> None:
 def _open_batch(run: RecipeRun, resume: bool, chunk: int | None) -> Batch:
     """The batch of the recipe, new or resumed."""
     items, journal = run.items, run.folder / JOURNAL / CHECKPOINT
-    inputs = "\n".join(items.fingerprints()).encode("utf-8", "surrogateescape")
+    inputs = "\n".join(each.fingerprint for each in items.members).encode("utf-8", "surrogateescape")
     subject = {
         "recipe": run.recipe.model_dump(mode="json"),
         "set of input files": hashlib.sha256(inputs).hexdigest(),
@@ -295,10 +300,10 @@ def _write_dataset(run: RecipeRun, batch: Batch) -> None:
     name = run.folder.resolve().name
     try:
         if run.recipe.outputs.dataset_by_group:
-            write_library(run.stage / "dataset", batch, name, provenance)
+            write_library(run.stage / DATASET, batch, name, provenance)
             return
         write_stored(
-            run.stage / "dataset",
+            run.stage / DATASET,
             lambda: shapes_of(batch),
             run.tally.n_coarse,
             name=name,
@@ -318,13 +323,20 @@ def _process_sample(run: RecipeRun, executor: Executor) -> Part:
     """The steps that need all particles at the same time: representatives and studies; then the exports."""
     recipe, outputs, has_dataset = run.recipe, run.recipe.outputs, run.tally.n_coarse > 0
     if recipe.representatives or outputs.lmax_study or outputs.coarsening_study:
-        particles = yield from _read_particles(run)
+        particles = [particle for _, particle in (yield from read_members(run.items.members, []))]
         if recipe.representatives is not None:
             has_dataset = yield from _build_dataset(run, recipe.representatives, particles, executor)
         yield from _run_studies(run, particles, executor)
     if recipe.exports is not None and has_dataset:
         try:
-            yield from export_dataset_step(recipe.exports, recipe.seed, run.stage)
+            options = export_options(recipe.exports, recipe.seed)
+            yield from export_dataset_folder(
+                run.stage / DATASET,
+                recipe.exports.targets,
+                run.stage / "exports",
+                options,
+                recipe.exports.lossy,
+            )
         except RegolithError as error:
             run.problems.append(str(error))
 
@@ -333,15 +345,14 @@ def _build_dataset(
     run: RecipeRun, outputs: Representatives, particles: list[Particle], executor: Executor
 ) -> Generator[Step, None, bool]:
     """Write the dataset of the representatives; returns whether that was possible."""
+    name, chosen = (
+        outputs.name or run.folder.resolve().name,
+        representatives_request(outputs, run.recipe.seed),
+    )
+    options = DatasetOptions(name, _preset(run), True, executor, chosen, outputs.sizes)
     try:
-        built = yield from build_dataset_step(
-            run.recipe,
-            outputs.model_copy(update={"name": outputs.name or run.folder.resolve().name}),
-            particles,
-            run.choices.coarsening_request,
-            _preset(run),
-            run.stage,
-            executor,
+        built = yield from build_dataset_folder(
+            particles, run.choices.coarsening_request, run.stage / DATASET, options
         )
     except RegolithError as error:
         run.problems.append(f"There is no dataset. ({error})")
@@ -362,17 +373,6 @@ def _run_studies(run: RecipeRun, particles: list[Particle], executor: Executor) 
             "coarsening_study",
             partial(study_coarsening, particles, choices.coarsening_request, executor),
         )
-
-
-def _read_particles(run: RecipeRun) -> Generator[Step, None, list[Particle]]:
-    """All particles that can be read, which a study needs at the same time."""
-    yield Started(N_("Reading particles"), len(run.items.members))
-    result: list[Particle] = []
-    for number, item in enumerate(run.items.members, start=1):
-        with contextlib.suppress(RegolithError):
-            result.append(item.particle())
-        yield Progress(number, len(run.items.members), item.name)
-    return result
 
 
 def _run_study(run: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:

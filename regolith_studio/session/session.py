@@ -244,7 +244,7 @@ class Session:
         """Run ``lmax_study`` or ``coarsening_study`` over all open particles; returns the task's id."""
         kind = Kind(kind)
         choices = self.choices
-        job = study_job(kind, self._open_particles(), choices, options)
+        title, job = study_job(kind, self._open_particles(), choices, options)
 
         def show(value: Any) -> None:
             self._studied[kind] = choices
@@ -253,11 +253,11 @@ class Session:
 
         def fail(failure: Failed) -> None:
             self.update(kind.value, failures={**self.results.failures, kind.value: failure.sentence})
-            self.failure_reporter(job.title)(failure)
+            self.failure_reporter(title)(failure)
 
         left = {each: why for each, why in self.results.failures.items() if each != kind.value}
         self.update(kind.value, failures=left)
-        return self._board.start(kind, job.title, job.job, Reactions(show, partial=show, failed=fail))
+        return self._board.start(kind, title, job, Reactions(show, partial=show, failed=fail))
 
     def choices_of(self, kind: Kind) -> Choices | None:
         """Those that a study was computed with; ``None`` if there is none."""

@@ -1,7 +1,6 @@
 """Studies of the present choices: rows of loss weights, and the jobs of the studies."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from regolith_studio.coarsening.methods import METHODS
@@ -72,34 +71,16 @@ def varied_rows(
     return rows
 
 
-@dataclass(frozen=True)
-class StudyJob:
-    """A job and what it is called on screen."""
-
-    title: str
-    job: Job
-
-
 def study_job(
     kind: Kind, particles: Sequence[Particle], choices: Choices, options: Mapping[str, Any]
-) -> StudyJob:
-    """The job of a study of `particles` with the present `choices`."""
+) -> tuple[str, Job]:
+    """Title and job of a study of `particles` with the present `choices`."""
     match kind:
         case Kind.LMAX_STUDY:
-            return StudyJob(
-                N_("RMSRE against l_max"),
-                Job(
-                    study_lmax,
-                    (tuple(particles),),
-                    {
-                        "seed": choices.seed,
-                        "fit_options": choices.fit_options,
-                        **options,
-                    },
-                ),
-            )
+            given = {"seed": choices.seed, "fit_options": choices.fit_options, **options}
+            return N_("RMSRE against l_max"), Job(study_lmax, (tuple(particles),), given)
         case Kind.COARSENING_STUDY:
             job = Job(study_coarsening, (tuple(particles), choices.coarsening_request), options)
-            return StudyJob(N_("RMSRE against loss weights"), job)
+            return N_("RMSRE against loss weights"), job
         case _:
             raise InputError(f"There is no study called {kind}.")

@@ -123,23 +123,10 @@ def match(
 ) -> Match:
     """Compare materials with a target and find the mixture of them that is nearest to it.
 
-    Parameters
-    ----------
-    target, candidates
-        Each with a size and one or more shapes that all others have too.
-    weighting
-        Whether a particle counts as one (``number``) or by its volume (``volume``).
-    seed
-        Of resampling and thinning.
+    Each has a size and one or more shapes that all others have too. ``weighting``: whether a particle counts
+    as one (``number``) or by its volume (``volume``). ``seed``: of resampling and thinning.
 
-    Raises
-    ------
-    InputError
-        If a table is too small, two have one name, or they have no size or shape in common.
-
-    Examples
-    --------
-    >>> match(soil, [fine, coarse]).mixture.energy
+    Raises InputError if a table is too small, two have one name, or they have no size or shape in common.
     """
     if weighting not in ("number", "volume"):
         raise InputError(f"Particles count by number or by volume, not by {weighting!r}.")

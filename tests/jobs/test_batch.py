@@ -48,7 +48,7 @@ def found(batch: Batch) -> list[tuple[int, int | None, bytes | None]]:
 
 
 def test_that_chunks_cover_every_item_once() -> None:
-    assert [tuple(c.indices) for c in chunks_of(7, 3)] == [(0, 1, 2), (3, 4, 5), (6,)]
+    assert [tuple(chunk) for chunk in chunks_of(7, 3)] == [(0, 1, 2), (3, 4, 5), (6,)]
     assert chunks_of(0, 3) == ()
 
 
@@ -71,7 +71,7 @@ def test_that_what_is_on_disk_is_not_done_again(tmp_path: Path) -> None:
     batch = Batch.create(tmp_path / "b.sqlite", 10, ABOUT, chunk=3)
     for number in (0, 2):
         chunk = batch.missing[0 if number == 0 else 1]
-        batch.store(chunk, [CheckpointRecord(i, {"square": -1}) for i in chunk.indices])
+        batch.store(chunk, [CheckpointRecord(i, {"square": -1}) for i in chunk])
     batch.checkpoint.close()
     again = Batch.resume(tmp_path / "b.sqlite", 10, ABOUT)
     assert again.n_done == 6

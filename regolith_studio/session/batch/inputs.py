@@ -2,17 +2,17 @@
 
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol, Self
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.io.file_names import name_key, unique_name
-from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import open_executor
 from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
 from regolith_studio.jobs.scan_jobs import scratch_folder
@@ -155,7 +155,7 @@ class VirtualInput(_NamedInput):
 
     def particle(self) -> Particle:
         """The particle's surface."""
-        draws, groups = _realizations(self.population, self.model, self.seed)
+        draws, groups = _cached_draws(self.population.model_dump_json(), self.model, self.seed)
         group = groups[self.index] or title_of(self.population)
         return Particle(self.name, virtual_mesh(draws, self.index, self.level), group)
 
@@ -198,10 +198,6 @@ class BatchInputs:
         """Members of the largest group of files; other inputs count as one group."""
         groups = Counter(each.file.group if isinstance(each, FileInput) else "" for each in self.members)
         return max(groups.values(), default=0)
-
-    def fingerprints(self) -> Iterable[str]:
-        """Of all members."""
-        return (member.fingerprint for member in self.members)
 
 
 def title_of(population: Population) -> str:
@@ -247,19 +243,28 @@ def model_of(population: Population, folder: Path | None) -> FittedModel:
     return fitted
 
 
-def _realizations(
-    population: Population, folder: Path | None, seed: int
-) -> tuple[Realizations, tuple[str, ...]]:
-    """All draws of a population and their groups: a kilobyte each, made once in each process."""
-    return _cached_draws(population.model_dump_json(), folder, seed)
-
-
 @lru_cache(maxsize=1)
 def _cached_draws(population: str, folder: Path | None, seed: int) -> tuple[Realizations, tuple[str, ...]]:
+    """All draws of a population, as JSON, and their groups: a kilobyte each, made once in each process."""
     selection = Population.model_validate_json(population)
     model = model_of(selection, folder)
     draws = model.draw(selection.n, seed, selection.bounds)
     return draws, groups_of(draws, model)
+
+
+def read_members(
+    members: Sequence[BatchInput], problems: list[FileProblem]
+) -> Generator[Step, None, list[tuple[BatchInput, Particle]]]:
+    """The inputs that can be read, with their particles; the others are added to `problems`."""
+    yield Started(N_("Reading particles"), len(members))
+    read: list[tuple[BatchInput, Particle]] = []
+    for number, item in enumerate(members, start=1):
+        try:
+            read.append((item, item.particle()))
+        except RegolithError as error:
+            problems.append(FileProblem(item.name, str(error)))
+        yield Progress(number, len(members), item.name)
+    return read
 
 
 def load_recipe_particles(recipe: Recipe, base: Path, workers: int = 1) -> Steps:
@@ -270,12 +275,6 @@ def load_recipe_particles(recipe: Recipe, base: Path, workers: int = 1) -> Steps
     with tempfile.TemporaryDirectory(dir=scratch_folder()) as folder, open_executor(workers) as executor:
         prepared = yield from prepare_inputs(recipe, base, Path(folder) / "prepared", executor)
         inputs = BatchInputs.of(recipe, base, prepared)
-        yield Started(N_("Reading particles"), len(inputs.members))
-        results: list[Particle | FileProblem] = []
-        for number, item in enumerate(inputs.members, start=1):
-            try:
-                results.append(item.particle())
-            except InputError as error:
-                results.append(FileProblem(item.name, str(error)))
-            yield Progress(number, len(inputs.members), item.name)
-        return collect_particles(results, inputs.problems)
+        problems = list(inputs.problems)
+        read = yield from read_members(inputs.members, problems)
+        return collect_particles([particle for _, particle in read], problems)

@@ -193,7 +193,8 @@ def _fit_population_model(
         population.bounds,
     )
     paths = [base / source for source in population.sources]
-    named = [text for text in map(_resolve_source(base), population.sources) if is_shape_source(text)]
+    sources = [_resolved_source(text, base) for text in population.sources]
+    named = [text for text in sources if is_shape_source(text)]
     if named and len(population.sources) > 1:
         raise InputError(
             "A population is drawn from one card, fit or model, or from meshes and tables only, got "
@@ -202,7 +203,7 @@ def _fit_population_model(
     problems: list[FileProblem] = []
     if named:
         source = read_shape_source(named[0])
-        marks = [named[0], source.sha256]
+        marks: list[Any] = [named[0], source.sha256]
     else:
         _check_sources_exist(population, paths)
         marks = [
@@ -222,13 +223,9 @@ def _fit_population_model(
     return folder, tuple(problems)
 
 
-def _resolve_source(base: Path) -> Any:
-    """Turns a source into the path beside the recipe, but for the names of shipped cards."""
-
-    def resolved(text: str) -> str:
-        return text if text in materials() and not (base / text).exists() else str(base / text)
-
-    return resolved
+def _resolved_source(text: str, base: Path) -> str:
+    """The path beside the recipe, but for the names of shipped cards."""
+    return text if text in materials() and not (base / text).exists() else str(base / text)
 
 
 def _check_sources_exist(population: Population, paths: list[Path]) -> None:

@@ -16,7 +16,7 @@ from regolith_studio.dataset.parameters import ExportSettings, RepresentativesSe
 from regolith_studio.dataset.size_distributions import parse_sizes
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import DatasetError, InputError
-from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.geometry.particle import Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.io import fits_from
@@ -27,23 +27,19 @@ from regolith_studio.io.own_files import JsonListWriter, json_bytes
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.batch import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.dataset_jobs import (
-    DatasetOptions,
-    RepresentativesRequest,
-    build_dataset_folder,
-    chosen_exporters,
-    export_dataset_folder,
-)
-from regolith_studio.jobs.events import Steps
-from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.dataset_jobs import RepresentativesRequest, chosen_exporters
 from regolith_studio.readers.particles import FileProblem
 from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, STAGES, shape_blob
 from regolith_studio.session.outputs.coarsening import document_head
-from regolith_studio.session.outputs.measurements import FittedSample, table_columns, table_row, write_fits
+from regolith_studio.session.outputs.measurements import (
+    FittedSample,
+    ParticleInfo,
+    table_columns,
+    table_row,
+    write_fits,
+)
 from regolith_studio.session.recipe import Exports, Recipe, Representatives
 from regolith_studio.settings import settings_in
-
-DATASET, EXPORTS = "dataset", "exports"
 
 
 def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
@@ -59,30 +55,6 @@ def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
         for exporter in chosen_exporters(recipe.exports.targets):
             check_loss_accepted(exporter, recipe.exports.lossy)
         export_options(recipe.exports, recipe.seed)
-
-
-def build_dataset_step(
-    recipe: Recipe,
-    request: Representatives,
-    particles: Sequence[Particle],
-    coarsening: CoarseningRequest,
-    preset: str | None,
-    folder: Path,
-    workers: int | Executor,
-) -> Steps:
-    """Write ``dataset`` in `folder`; returns a `DatasetBuildResult`."""
-    chosen = representatives_request(request, recipe.seed)
-    options = DatasetOptions(request.name, preset, True, workers, chosen, sizes=request.sizes)
-    return (yield from build_dataset_folder(particles, coarsening, folder / DATASET, options))
-
-
-def export_dataset_step(request: Exports, seed: int, folder: Path) -> Steps:
-    """Write ``dataset`` below `folder` for other programs, below ``exports``; returns the exports."""
-    return (
-        yield from export_dataset_folder(
-            folder / DATASET, request.targets, folder / EXPORTS, export_options(request, seed), request.lossy
-        )
-    )
 
 
 def representatives_request(request: Representatives, seed: int) -> RepresentativesRequest | None:
@@ -104,16 +76,6 @@ class ResultWriter(Protocol):
 
     def add(self, record: CheckpointRecord) -> None:
         """Add the record of one particle."""
-
-
-@dataclass(frozen=True)
-class FittedParticleInfo:
-    """What a fit's file says of its particle."""
-
-    name: str
-    group: str
-    source: Source | None
-    notes: tuple[str, ...]
 
 
 @dataclass
@@ -191,7 +153,7 @@ def mesh_writer(folder: Path, request: CoarseningRequest) -> Iterator[ResultWrit
 
 @dataclass
 class _FitWriter:
-    origins: list[FittedParticleInfo] = field(default_factory=list)
+    origins: list[ParticleInfo] = field(default_factory=list)
     fits: list[HarmonicFit] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)
 
@@ -199,9 +161,7 @@ class _FitWriter:
         values = record.values
         if entry := values.get("fit"):
             source = None if values["source"] is None else Source(*values["source"])
-            self.origins.append(
-                FittedParticleInfo(values["name"], values["group"], source, tuple(values["notes"]))
-            )
+            self.origins.append(ParticleInfo(values["name"], values["group"], source, tuple(values["notes"])))
             self.fits.append(_fit(entry, record.blobs[COEFFICIENTS]))
         elif reason := reason_of(record, "fitting"):
             self.failed.append((values["name"], reason))
@@ -278,7 +238,8 @@ class RunStatistics:
             self.unread.append(reason)
             return
         self.n_read += 1
-        self.problems += [f"{values['name']}: {reason}" for reason in _reasons(record)]
+        reasons = dict.fromkeys(each["reason"] for each in values["failures"])
+        self.problems += [f"{values['name']}: {reason}" for reason in reasons]
         if "coarse" in values:
             self.n_coarse += 1
             self.first_coarse = record.index if self.first_coarse is None else self.first_coarse
@@ -325,10 +286,6 @@ def reason_of(record: CheckpointRecord, stage: str = "") -> str:
 def n_failures(record: CheckpointRecord) -> int:
     """1 if anything has failed."""
     return int(bool(record.values.get("failures") or LOST in record.values))
-
-
-def _reasons(record: CheckpointRecord) -> list[str]:
-    return list(dict.fromkeys(each["reason"] for each in record.values["failures"]))
 
 
 def _fit(entry: dict[str, Any], content: bytes) -> HarmonicFit:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, CHORD_KEYS, LOSS_KEYS
 from regolith_studio.errors import GeometryError
@@ -94,19 +94,19 @@ def interval_cells(intervals: Mapping[str, tuple[float, float]]) -> dict[Column,
     }
 
 
-class TableItem(Protocol):
-    """Anything that a row of a table can be about."""
+@dataclass(frozen=True)
+class ParticleInfo:
+    """What tables and files say of a particle whose mesh is not in memory."""
 
-    @property
-    def name(self) -> str:
-        """Unique in the table."""
-
-    @property
-    def group(self) -> str:
-        """That it belongs to; may be empty."""
+    name: str
+    group: str
+    source: Source | None = None
+    notes: tuple[str, ...] = ()
 
 
-def descriptor_table(particles: Sequence[TableItem], facts: Sequence[MeasuredParticle]) -> Table:
+def descriptor_table(
+    particles: Sequence[Particle | ParticleInfo], facts: Sequence[MeasuredParticle]
+) -> Table:
     """One row a particle, one column a descriptor with its unit."""
     keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
     rows = [
@@ -146,31 +146,11 @@ def _value(facts: MeasuredParticle, key: str) -> float | None:
     return facts.descriptors.get(key) if facts.descriptors else None
 
 
-class FittedParticle(Protocol):
-    """What the files say of a particle besides its fit."""
-
-    @property
-    def name(self) -> str:
-        """Unique within its sample."""
-
-    @property
-    def group(self) -> str:
-        """That it belongs to."""
-
-    @property
-    def source(self) -> Source | None:
-        """Where it was read."""
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What was wrong with it."""
-
-
 @dataclass(frozen=True)
 class FittedSample:
     """Particles with their fits, all of the same degree, and the sentences of those that failed."""
 
-    particles: tuple[FittedParticle, ...]
+    particles: tuple[Particle | ParticleInfo, ...]
     fits: tuple[HarmonicFit, ...]
     failed: tuple[tuple[str, str], ...] = ()
 

@@ -28,7 +28,12 @@ from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.session.outputs.measurements import described, descriptor_table, interval_cells
+from regolith_studio.session.outputs.measurements import (
+    ParticleInfo,
+    described,
+    descriptor_table,
+    interval_cells,
+)
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.protocol import FittedModel
@@ -158,12 +163,6 @@ TABLE = "particles.csv"
 DOCUMENT = "generation.json"
 
 
-@dataclass(frozen=True)
-class _NameAndGroup:
-    name: str
-    group: str
-
-
 @dataclass(frozen=True, eq=False)
 class GeneratedParticles:
     """Drawn particles with their source, request and model.
@@ -187,7 +186,7 @@ def write_table_of_meshes(
 ) -> None:
     """Write ``particles.csv`` of particles whose meshes lie in `folder`: all descriptors, and the origin."""
     named = [
-        _NameAndGroup(*each)
+        ParticleInfo(*each)
         for each in zip(particle_names(len(generated.draws)), generated.groups, strict=True)
     ]
     _write_table(folder, descriptor_table(named, facts), generated.draws)
@@ -252,11 +251,13 @@ def _comparison(compared: DistributionComparison | None) -> dict[str, Any] | Non
     """The table and its assessment; nothing where there are too few particles."""
     if compared is None or not compared.comparable:
         return None
-    table = compared.table()
-    names = [column.name for column in table.columns]
-    rows = [dict(zip(names, row, strict=True)) for row in table.rows]
-    counts = {"measured": len(compared.measured), "drawn": len(compared.drawn)}
-    return counts | {"limit": compared.noise.limit, "assessment": str(compared.assessment()), "rows": rows}
+    return {
+        "measured": len(compared.measured),
+        "drawn": len(compared.drawn),
+        "limit": compared.noise.limit,
+        "assessment": str(compared.assessment()),
+        "rows": compared.table().records,
+    }
 
 
 def _rejection_bias(generated: GeneratedParticles) -> dict[str, float] | None:

@@ -68,10 +68,8 @@ def error_table(table: Table, by: str, title: str, **only: Cell) -> Table:
     ``table``: with the columns ``descriptor``, ``rmsre``, ``rmsre_low`` and ``rmsre_high``. ``only``: values
     of columns; other rows are left out.
     """
-    names = [column.name for column in table.columns]
     lines: dict[str, dict[str, str]] = {}
-    for cells in table.rows:
-        row = dict(zip(names, cells, strict=True))
+    for row in table.records:
         if all(row[name] == value for name, value in only.items()):
             shown = interval_text(row["rmsre"], row["rmsre_low"], row["rmsre_high"])
             lines.setdefault(str(row[by]), {})[str(row["descriptor"])] = shown
@@ -83,9 +81,9 @@ def error_table(table: Table, by: str, title: str, **only: Cell) -> Table:
 
 def selected_columns(table: Table, names: tuple[str, ...], title: str) -> Table:
     """The columns of these names."""
-    at = [[column.name for column in table.columns].index(name) for name in names]
-    rows = tuple(tuple(row[k] for k in at) for row in table.rows)
-    return Table(title, tuple(table.columns[k] for k in at), rows)
+    columns = {column.name: column for column in table.columns}
+    rows = tuple(tuple(row[name] for name in names) for row in table.records)
+    return Table(title, tuple(columns[name] for name in names), rows)
 
 
 def png_of(files: Sequence[Path], stem: str) -> Path:
