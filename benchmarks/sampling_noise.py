@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.populations import measured, realized, sample_from
 from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.dataset.representatives import NEEDED, quality_steps, sampling_noise
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 PARTS, CHOICES = (10, 60, 150, 600), 20
 COUNTS = (1, 5, 10, 20, 70, 200)

@@ -191,10 +191,10 @@ def timed_steps(archive: Path) -> dict[str, float]:
 
     from regolith_studio.dataset.folder_io import stored_shape
     from regolith_studio.jobs.coarsening_jobs import coarsen_particle
-    from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.particle_jobs import measure_particle
     from regolith_studio.readers.particles import find_files, read_file
     from regolith_studio.readers.settings import ReadingSettings
+    from regolith_studio.steps import result_of
 
     files, request = (
         find_files([archive], [])[: N_TIMED + 1],

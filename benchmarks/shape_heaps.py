@@ -22,10 +22,11 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dem.case import ReposeCase
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import Partial, result_of
+from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import ReposeVariant, study_repose
 from regolith_studio.readers.particles import sample_particles
+from regolith_studio.steps import result_of
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.studies.uncertainty import AngleBudget, ChainStep
 

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.synthesis import reconstruct
-    from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.jobs.repose_jobs import ReposeRequest
     from regolith_studio.jobs.uncertainty import measure_uncertainty
@@ -43,6 +42,7 @@ if TYPE_CHECKING:
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.readers.volumes.read import read_volume
     from regolith_studio.scene.repose_export import export_repose
+    from regolith_studio.steps import result_of
     from regolith_studio.studies.matching import ComparedMaterial, match
     from regolith_studio.web.notebook import show
 
@@ -106,7 +106,7 @@ _MODULES = {
     "read_particles": "readers.particles",
     "read_volume": "readers.volumes.read",
     "reconstruct": "harmonics.synthesis",
-    "result_of": "jobs.events",
+    "result_of": "steps",
     "sample_particles": "readers.particles",
     "show": "web.notebook",
     "simulate_repose": "pipeline",

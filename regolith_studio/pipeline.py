@@ -15,13 +15,13 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings, s
 from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.output_lock import output_lock
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.model_jobs import compare_distributions, make_particles
 from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, repose_steps
 from regolith_studio.readers.shape_files import radius_of
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, model_settings
 from regolith_studio.shape_models.protocol import FittedModel, SizeRange
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import result_of
 from regolith_studio.studies.population_distances import DistributionComparison
 
 

@@ -321,9 +321,9 @@ def match(
     seed: Seed = 0,
 ) -> None:
     """Say how near simulants are to a soil, and which mixture of them is nearest, in grams."""
-    from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.matching_jobs import MatchRequest, match_materials
     from regolith_studio.readers.settings import unit_factor
+    from regolith_studio.steps import result_of
 
     with usage_errors():
         unit_factor(unit)

@@ -3,7 +3,7 @@
 import dataclasses
 import math
 import numbers
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.geometry.topology import genus
 from regolith_studio.settings import is_whole
+from regolith_studio.steps import as_events, result_of
 
 SIZE_LIMITS = (1e-50, 1e50)
 """Cube root of a particle's volume: moments of inertia go with its fifth power."""
@@ -113,12 +114,7 @@ def coarsen(
     if max_vertices is not None:
         n_facets = facets_for_vertices(max_vertices)
     _, run = _prepare(particle, n_facets, method, weights, seed, settings, fewer)
-    while True:
-        try:
-            next(run)
-        except StopIteration as end:
-            result: CoarseningResult = end.value
-            return result
+    return result_of(run)
 
 
 def coarsening_steps(
@@ -132,18 +128,16 @@ def coarsening_steps(
 ) -> Generator[CoarseningProgress, None, CoarseningResult]:
     """As :func:`coarsen`, yielding each step; the first one has a polyhedron and comes at once."""
     target, run = _prepare(particle, n_facets, method, weights, seed, settings, fewer)
-    while True:
-        try:
-            step = next(run)
-        except StopIteration as end:
-            result: CoarseningResult = end.value
-            return result
+
+    def told(step: MethodStep) -> Iterator[CoarseningProgress]:
         polyhedron: Polyhedron | None = None
         if step.half_spaces is not None:
             polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
         elif step.compound is not None:
             polyhedron = step.compound().moved(rotation=target.axes.T, scale=target.scale)
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
+
+    return (yield from as_events(run, told))
 
 
 def _prepare(

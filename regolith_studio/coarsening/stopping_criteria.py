@@ -14,6 +14,7 @@ from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_, Message, Number
+from regolith_studio.steps import result_of
 
 
 @dataclass(frozen=True)
@@ -117,13 +118,7 @@ def fewest_facets(
 
 def coarsen_below(mesh: Mesh | Target, limit: float, **options: Any) -> CoarseningResult:
     """The result of :func:`fewest_facets`, whose `options` it takes."""
-    steps = fewest_facets(mesh, limit, **options)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            found: CoarseningResult = end.value
-            return found
+    return result_of(fewest_facets(mesh, limit, **options))
 
 
 def check_limit(limit: float) -> None:

@@ -12,6 +12,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.steps import result_of
 
 
 class Descriptors(Mapping[str, float]):
@@ -72,13 +73,7 @@ def describe(
     ValueError
         If a key or the box metric is unknown.
     """
-    steps = description_steps(solid, keys, box_metric)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            result: Descriptors = end.value
-            return result
+    return result_of(description_steps(solid, keys, box_metric))
 
 
 def description_steps(

@@ -37,6 +37,7 @@ from regolith_studio.imaging.settings import ExtractionSettings, Surface
 from regolith_studio.imaging.volume import Box, Origin, Volume, box_between, grown, n_voxels, touches, within
 from regolith_studio.imaging.volume_slabs import BATCH_VOXELS, ParallelMap, SharedArray, in_batches
 from regolith_studio.messages import N_, count_message
+from regolith_studio.steps import result_of
 
 WIDE_NECK, WIDE_NECK_OF_SMALL = 0.6, 0.65
 """Diameter of the contact of two labels, over that of the ball of the smaller one's volume, from which on
@@ -126,13 +127,7 @@ def extract_particles(
     volume: Volume, settings: ExtractionSettings | None = None, grey: Volume | None = None
 ) -> Extraction:
     """Run :func:`extraction_steps` to its end."""
-    steps = extraction_steps(volume, settings, grey=grey)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            result: Extraction = end.value
-            return result
+    return result_of(extraction_steps(volume, settings, grey=grey))
 
 
 def extraction_steps(

@@ -42,10 +42,11 @@ from regolith_studio.harmonics.coefficients import ShCoefficients, sample_spectr
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_sample
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_events
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.particle_jobs import measure_sample
 from regolith_studio.messages import N_, count_message
+from regolith_studio.steps import as_events
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,13 @@ one :class:`Finished`, :class:`Failed` or :class:`Stopped`, which always comes l
 
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
+
+from regolith_studio.steps import as_events
+
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True)
@@ -80,43 +84,6 @@ class Job:
     def steps(self) -> Steps:
         """A fresh run of the job."""
         return self.function(*self.arguments, **self.options)
-
-
-def result_of(steps: Generator[Any, None, Any]) -> Any:
-    """Do all steps of a job in this thread, and return its result.
-
-    Parameters
-    ----------
-    steps
-        A job that has been called: ``result_of(repose_steps(dataset, folder, request))``.
-
-    Raises
-    ------
-    RegolithError
-        Of the job.
-    """
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
-_Other = TypeVar("_Other")
-_Result = TypeVar("_Result")
-
-
-def as_events(
-    steps: Generator[_Other, None, _Result], events_of: Callable[[_Other], Iterable[Step]]
-) -> Generator[Step, None, _Result]:
-    """Do steps of another kind, yield the events of each, and return the result."""
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            result: _Result = end.value
-            return result
-        yield from events_of(step)
 
 
 def as_progress(steps: Generator[tuple[int, int], None, _Result]) -> Generator[Step, None, _Result]:

@@ -38,7 +38,7 @@ from regolith_studio.io.checkpoint import Checkpoint
 from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Progress, Started, Step, Steps, as_events
+from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
@@ -47,6 +47,7 @@ from regolith_studio.messages import N_, Message
 from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.readers.volumes.files import member_folder, member_names
 from regolith_studio.readers.volumes.region import RegionSettings
+from regolith_studio.steps import as_events
 
 
 def write_labels(labels: Volume, settings: ExtractionSettings, path: Path, segmented: bool) -> Steps:

@@ -20,7 +20,7 @@ from regolith_studio.io.atomic import write_in_stage
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, as_events
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_sample, measure_particle
 from regolith_studio.jobs.study_jobs import study_population
@@ -33,6 +33,7 @@ from regolith_studio.shape_models.protocol import FittedModel, SizeRange
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import checked_bounds
+from regolith_studio.steps import as_events
 from regolith_studio.studies.population import (
     KEYS,
     MEASURE_BATCH,

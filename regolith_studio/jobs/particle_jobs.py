@@ -20,7 +20,7 @@ from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FIT_DEGRE
 from regolith_studio.harmonics.star_point import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps, result_of
+from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_, Message, Number, join_messages
 from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, TableConvention, TableReading
@@ -35,6 +35,7 @@ from regolith_studio.readers.particles import (
     sample_particles,
 )
 from regolith_studio.readers.settings import AS_USUAL, ReadingSettings
+from regolith_studio.steps import result_of
 
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
 

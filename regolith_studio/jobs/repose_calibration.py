@@ -14,7 +14,7 @@ from regolith_studio.dem.run_io import read_run
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import JOURNAL
 from regolith_studio.io.output_lock import output_lock
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_events, result_of
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest
 from regolith_studio.jobs.repose_study import (
     CASE_KEYS,
@@ -26,6 +26,7 @@ from regolith_studio.jobs.repose_study import (
     write_with_runs,
 )
 from regolith_studio.messages import N_, Message
+from regolith_studio.steps import as_events, result_of
 from regolith_studio.studies.calibration import CalibrationParameter, WantedResult
 from regolith_studio.studies.repose_calibration import (
     DATASET,

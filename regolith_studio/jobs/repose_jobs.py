@@ -43,6 +43,7 @@ from regolith_studio.jobs.events import Job, JobResult, Partial, Progress, Start
 from regolith_studio.jobs.executor import Executor, value_of
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
 from regolith_studio.messages import N_
+from regolith_studio.steps import as_events
 
 PROGRESS_STEPS = 1000
 """Of a run, in its progress."""
@@ -308,13 +309,7 @@ def verify_engine(key: str, quick: bool = False) -> Steps:
 
 def _step_pair(key: str, seed: int) -> Steps:
     yield Started(N_("Verifying the engine"))
-    steps = step_pair(verifiable_engine(key), seed)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-        yield Progress(0, 1)
+    return (yield from as_events(step_pair(verifiable_engine(key), seed), lambda _step: (Progress(0, 1),)))
 
 
 def _values(results: Iterable[JobResult | None]) -> Generator[None, None, list[Any]]:

@@ -45,11 +45,12 @@ from regolith_studio.imaging.volume_slabs import (
     unpacked,
 )
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_events, as_progress
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, as_progress
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.read import VolumeFile, describe_volume
 from regolith_studio.readers.volumes.region import RegionSettings
+from regolith_studio.steps import as_events
 
 IN_MEMORY = 2**30
 """Bytes of a volume, or of what is computed from it, beyond which it stays on the disk."""

@@ -24,10 +24,11 @@ from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.io.checkpoint import Checkpoint, CheckpointRecord
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, as_events, result_of
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import as_events, result_of
 from regolith_studio.studies import StudyProgress
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study

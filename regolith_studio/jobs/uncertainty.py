@@ -27,7 +27,7 @@ from regolith_studio.jobs.dataset_jobs import (
     RepresentativesRequest,
     build_dataset_folder,
 )
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps, as_events, result_of
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.repose_jobs import ReposeRequest
@@ -49,6 +49,7 @@ from regolith_studio.jobs.uncertainty_chain import (
     evaluate_rows,
 )
 from regolith_studio.messages import N_, Message
+from regolith_studio.steps import as_events, result_of
 from regolith_studio.studies.repose import ReposeStudy
 from regolith_studio.studies.uncertainty import (
     EVALUATION,

@@ -23,7 +23,7 @@ from regolith_studio.imaging.settings import DenoiseMethod
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
-from regolith_studio.jobs.events import Progress, Started, Steps, result_of
+from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import particles_of
 from regolith_studio.jobs.scan_jobs import read_all
@@ -31,6 +31,7 @@ from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import radius_of
 from regolith_studio.shape_models.models import MODELS, model_settings
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import result_of
 from regolith_studio.studies.uncertainty import KEYS, RESAMPLED, RESAMPLES, ChainStep
 
 LABELS = {

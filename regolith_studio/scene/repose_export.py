@@ -34,10 +34,11 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.atomic import exchange, hidden_folder, recover_folder, write_in_stage
 from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.triangles import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes, stl_bytes
-from regolith_studio.jobs.events import Progress, Started, Steps, result_of
+from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.messages import N_
 from regolith_studio.scene.heap_physics import heap_mjcf, heap_shapes, heap_usd
 from regolith_studio.scene.instancing import COLOURS
+from regolith_studio.steps import result_of
 from regolith_studio.version import __version__
 
 UNIT_DIAMETER = float((np.pi / 6) ** (1 / 3))

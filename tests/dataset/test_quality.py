@@ -12,7 +12,7 @@ from regolith_studio.dataset.representatives import (
     representation_error,
 )
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 from .test_representatives import population
 

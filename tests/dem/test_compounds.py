@@ -19,7 +19,7 @@ from regolith_studio.dem.run_io import read_shapes, save_shapes
 from regolith_studio.dem.verification.certificate import verifiable_engine
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments, entry
 from tests.geometry.solids import rotation
 from tests.tolerance import relative

@@ -18,7 +18,7 @@ from regolith_studio.dem.rotating_drum import TURNING, DrumSolver
 from regolith_studio.dem.snapshot import TURN, ParticleState
 from regolith_studio.dem.verification.bodies import cuboid, scene
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 DRUM_ENGINES = [key for key, engine in ENGINES.items() if engine.capabilities.drum and engine.find().there]
 

@@ -23,9 +23,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.jobs import repose_calibration, repose_jobs
-from regolith_studio.jobs.events import Started, Steps, result_of
+from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, calibration_steps
 from regolith_studio.jobs.repose_jobs import ReposeRequest
+from regolith_studio.steps import result_of
 from regolith_studio.studies.figures import repose as figures
 from regolith_studio.studies.repose_calibration import angle_target, calibration_document, drum_target
 from tests.dem.cone_engine import cone_engine, tree, true_angle, write_figure

@@ -15,7 +15,7 @@ from regolith_studio.dem.verification import scenes
 from regolith_studio.dem.verification.bodies import cuboid, scene
 from regolith_studio.dem.verification.certificate import verifiable_engine
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 KEYS = [key for key in ("mujoco", "rapier", "box3d") if ENGINES[key].find().there]
 

@@ -22,7 +22,8 @@ from regolith_studio.dem.verification.heaps import CLOSE, LOOSE, HeapRuns, _pair
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs import repose_jobs
-from regolith_studio.jobs.events import Progress, result_of
+from regolith_studio.jobs.events import Progress
+from regolith_studio.steps import result_of
 
 
 @dataclass

@@ -21,7 +21,7 @@ from regolith_studio.imaging.settings import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.volume_slabs import ScratchArrays, unpacked
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 from regolith_studio.jobs.extraction_settings import VolumeInput
 
 path, kind, limit = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])

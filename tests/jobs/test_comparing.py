@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.model_jobs import compare_distributions
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import result_of
 
 RADII = np.array([1.0, 2.0, 3.0, 4.0])
 

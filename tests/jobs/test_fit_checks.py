@@ -7,8 +7,8 @@ import numpy as np
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.particle_jobs import TOLERANCE, FitRequest, check_fits, fit_sample
+from regolith_studio.steps import result_of
 
 
 def bumpy(amplitude: float, degree: int) -> Mesh:

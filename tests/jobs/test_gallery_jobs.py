@@ -8,10 +8,11 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.events import Partial, Progress, result_of
+from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.study_jobs import coarsen_gallery, study_gallery, study_of_cells
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import COMPOUND, chosen_rows
+from regolith_studio.steps import result_of
 from regolith_studio.studies.loss_variants import paper_variants
 from regolith_studio.studies.polyhedron_gallery import gallery_table
 from tests.coarsening.compound.unions import dumbbell

@@ -20,10 +20,11 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.jobs import repose_jobs, uncertainty
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.events import Partial, Progress, Steps, result_of
+from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.uncertainty import UncertaintyRequest, measure_uncertainty, uncertainty_steps
 from regolith_studio.jobs.uncertainty_chain import Chain, GrainSample, evaluate_rows
+from regolith_studio.steps import result_of
 from regolith_studio.studies.figures import repose as figures
 from regolith_studio.studies.uncertainty import CONFIDENCE, KEYS, OUTPUTS
 from tests.dem.cone_engine import cone_engine, true_angle, write_figure

@@ -13,7 +13,6 @@ import pytest
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import RegolithError
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_settings import read_grain_settings
 from regolith_studio.jobs.particle_jobs import load_particles
 from regolith_studio.readers.coefficient_tables import read_coefficients
@@ -25,6 +24,7 @@ from regolith_studio.session.file_kinds import FileKind, kind_of
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import read_project
 from regolith_studio.session.recipe import read_recipe
+from regolith_studio.steps import result_of
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes and links of POSIX systems")
 

@@ -35,10 +35,10 @@ from regolith_studio.dem.run_io import (
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
 from regolith_studio.scene import cameras, plotter_setup
 from regolith_studio.scene.repose_export import export_repose, run_shapes
+from regolith_studio.steps import result_of
 from tests.dataset.example import elbow_entry, entry
 from tests.tolerance import relative
 

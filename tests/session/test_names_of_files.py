@@ -22,7 +22,6 @@ from regolith_studio.io.file_names import file_stem
 from regolith_studio.io.tables import read_csv
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_sample
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import measure_particle
 from regolith_studio.readers.particles import read_mesh, read_particles
@@ -34,6 +33,7 @@ from regolith_studio.session.outputs.particles import write_particle
 from regolith_studio.session.project import Project
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
+from regolith_studio.steps import result_of
 from tests.dataset.example import entry
 
 BALL = icosphere(2)

@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.triangles import stl_bytes
-from regolith_studio.jobs.events import Progress, Started, result_of
+from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.jobs.extraction_jobs import extract_file
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.readers.particles import read_mesh
@@ -23,6 +23,7 @@ from regolith_studio.session.recipe import recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import write_model
+from regolith_studio.steps import result_of
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12, "target": "particle"}
 GREY = str(resource("samples", "ct", "synthetic-grey.tif"))

@@ -20,7 +20,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.io.triangles import stl_bytes
-from regolith_studio.jobs.events import Progress, Steps, result_of
+from regolith_studio.jobs.events import Progress, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
@@ -49,6 +49,7 @@ from regolith_studio.session.report.write import (
     write_report,
 )
 from regolith_studio.settings import settings_of_kind
+from regolith_studio.steps import result_of
 from regolith_studio.studies.figures import write_figure
 
 NUMBERS = Table("Numbers", (Column("name"), Column("length", "um")), (("one", 1.5), ("<two>", None)))

@@ -17,7 +17,6 @@ from regolith_studio.imaging.settings import ExtractionSettings, SplittingSettin
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
@@ -32,6 +31,7 @@ from regolith_studio.session.recipe import Outputs, read_recipe
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import materials
+from regolith_studio.steps import result_of
 
 CHOICES = Choices(
     method="annealing", target="fit", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3

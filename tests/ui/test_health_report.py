@@ -12,10 +12,10 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.particle_jobs import find_faults, measure_particle
 from regolith_studio.scene.overlays import FAULT_COLOURS, show_faults
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.steps import result_of
 from regolith_studio.ui.pages.sample.page import KINDS, HealthPanel
 
 BALL = icosphere(2)

@@ -13,7 +13,6 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.guide import chapter
 from regolith_studio.io.triangles import stl_bytes
-from regolith_studio.jobs.events import result_of
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.shape_files import ShapeSource
@@ -21,6 +20,7 @@ from regolith_studio.session.project import SessionRecipe
 from regolith_studio.session.provenance import SampleSource, VirtualSource
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import result_of
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.files import UnitDialog
 from regolith_studio.ui.dialogs.help import PAGES, as_markdown

@@ -28,6 +28,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.messages import N_, Message, join_messages
 from regolith_studio.settings import is_whole
+from regolith_studio.steps import result_of
 
 PARTS_LIMITS = (2, 8)
 CONVEX = 1e-6
@@ -111,20 +112,11 @@ class CompoundMethod:
         effort, touching = EFFORTS[settings.level], settings.joint == "touch"
         run = search_compound(target, weights, parts, n_facets, effort, seed, touching)
         result = yield from _compound(target, n_facets, weights, parts, effort, run)
-        one = _last(search.steps())
+        one = result_of(search.steps())
         if _rank(target, weights, one) < _rank(target, weights, result):
             missing = one.achieved and _reason(target, weights, one.achieved, parts, n_facets)
             return replace(one, makes_compounds=True, reason=missing or one.reason)
         return result
-
-
-def _last(run: Generator[MethodStep, None, MethodResult]) -> MethodResult:
-    while True:
-        try:
-            next(run)
-        except StopIteration as end:
-            result: MethodResult = end.value
-            return result
 
 
 def _rank(target: Target, weights: LossWeights, result: MethodResult) -> tuple[bool, float]:

@@ -33,6 +33,7 @@ from regolith_studio.dem.snapshot import EngineState
 from regolith_studio.dem.verification import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.dem.verification.bodies import DIAMETER, polyhedra_dataset
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.steps import as_events
 
 N_PARTICLES, SEEDS = 500, (0, 1, 2, 3, 4)
 AFTER_REST = 100.0
@@ -198,12 +199,7 @@ def _lifted(engine: VerifiableEngine, seed: int) -> Generator[None, None, Lifted
 
 def _turns(steps: Generator[Any, None, Any]) -> Generator[None, None, Any]:
     """The result of a simulation; the caller gets a turn at every snapshot."""
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-        yield
+    return as_events(steps, lambda _step: (None,))
 
 
 def _angle(result: SimulationResult) -> float:

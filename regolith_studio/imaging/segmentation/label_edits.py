@@ -4,7 +4,7 @@ Edits name grains by voxels in them, not by numbers, so that a list of edits mea
 the same settings give again.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Literal, get_args
@@ -66,7 +66,7 @@ class LabelEdit:
 
 def apply_edits(
     numbers: NDArray[np.int32], edits: Sequence[LabelEdit], edges: FloatArray
-) -> Iterator[tuple[int, int]]:
+) -> Generator[tuple[int, int], None, None]:
     """Change labels in place, one edit after the other; tells how many are done, of how many.
 
     The first part of a split grain keeps its label, further ones get new labels above the highest; labels of

@@ -6,7 +6,7 @@ logistic regression of scikit-learn gives the class of each: linear limits are w
 support.
 """
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal, get_args
@@ -296,7 +296,7 @@ def sort_objects(
     training: ObjectTraining,
     splitting: SplittingSettings,
     min_voxels: int,
-) -> Iterator[tuple[int, int]]:
+) -> Generator[tuple[int, int], None, None]:
     """Keep, split again or drop objects by their class, in place; tells how many are done, of how many.
 
     The first part of an object that is split keeps its label, further ones get new labels above the highest.

@@ -5,7 +5,7 @@ whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a 
 and write their own slabs of these arrays, also in other processes, and can be done twice.
 """
 
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -65,6 +65,7 @@ from regolith_studio.imaging.volume_slabs import (
 )
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_, Message, Number
+from regolith_studio.steps import as_events, result_of
 
 
 @dataclass(frozen=True)
@@ -175,13 +176,7 @@ def segment(
     volume: Volume, settings: SegmentationSettings | None = None, outside: ScanOutside | None = None
 ) -> Segmentation:
     """Run :func:`segmentation_steps` on a volume in memory to its end."""
-    steps = segmentation_steps(volume, settings, outside=outside)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            result: Segmentation = end.value
-            return result
+    return result_of(segmentation_steps(volume, settings, outside=outside))
 
 
 def segmentation_steps(
@@ -288,15 +283,11 @@ def _mark_outside(numbers: NDArray[np.int32], grey: Volume, outside: ScanOutside
             numbers[:, :, first:stop][outside.of(grey.read(first, stop))] = OUTSIDE
 
 
-def _staged(stage: str, steps: Iterable[tuple[int, int]]) -> Generator[SegmentationProgress, None, Any]:
+def _staged(
+    stage: str, steps: Generator[tuple[int, int], None, Any]
+) -> Generator[SegmentationProgress, None, Any]:
     """The steps under the name of their stage; returns what they do."""
-    iterator = iter(steps)
-    while True:
-        try:
-            done, total = next(iterator)
-        except StopIteration as end:
-            return end.value
-        yield SegmentationProgress(stage, done, total)
+    return as_events(steps, lambda step: (SegmentationProgress(stage, *step),))
 
 
 @dataclass(frozen=True, eq=False)

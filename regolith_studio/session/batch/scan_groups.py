@@ -23,13 +23,14 @@ from regolith_studio.io.atomic import listed_hashes, staged_folder, write_bytes
 from regolith_studio.io.file_names import file_stem, name_key, path_inside
 from regolith_studio.io.own_files import read_json
 from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text, read_csv
-from regolith_studio.jobs.events import Started, Step, Steps, as_events
+from regolith_studio.jobs.events import Started, Step, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import unfinished_file, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.session.outputs.particles import LISTED, RECIPE, TABLE, ExtractionFolder, input_document
+from regolith_studio.steps import as_events
 
 COMPARISON = "groups.csv"
 QUANTILES = (0.1, 0.5, 0.9)

@@ -8,6 +8,7 @@ from PySide6.QtGui import QColor, QImage, QPainter, QPixmap, QPolygonF
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.steps import result_of
 
 OVERSAMPLING = 2
 _VIEW = np.array([[0.88, 0.48, 0.0], [-0.24, 0.43, 0.87], [0.42, -0.76, 0.49]])
@@ -23,13 +24,7 @@ Painting = Generator[None, None, QPixmap]
 
 def thumbnail(mesh: Mesh, colour: str, size: int = 96) -> QPixmap:
     """Shaded picture of a mesh on a transparent background, `size` pixels wide and high."""
-    painting = paint_thumbnail(mesh, colour, size)
-    while True:
-        try:
-            next(painting)
-        except StopIteration as end:
-            made: QPixmap = end.value
-            return made
+    return result_of(paint_thumbnail(mesh, colour, size))
 
 
 def paint_thumbnail(mesh: Mesh, colour: str, size: int = 96) -> Painting:

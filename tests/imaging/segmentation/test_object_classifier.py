@@ -18,7 +18,7 @@ from regolith_studio.imaging.segmentation.object_classifier import (
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment, segmentation_steps
 from regolith_studio.imaging.settings import SplittingSettings
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 GRAIN, SEVERAL, ARTEFACT = range(3)
 CELL, ACROSS = 34, 3

@@ -26,7 +26,7 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings, p
 from regolith_studio.imaging.settings import CleaningSettings, DenoiseSettings, ThresholdSettings
 from regolith_studio.imaging.volume import Volume, box_between
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SharedArray
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 PROBABLE = ThresholdSettings("probability", 0.5)
 THREE = (PixelClass("resin", False), PixelClass("bright mineral", True), PixelClass("dark mineral", True))

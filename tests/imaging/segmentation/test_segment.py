@@ -33,7 +33,7 @@ from regolith_studio.imaging.settings import (
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
-from regolith_studio.jobs.events import result_of
+from regolith_studio.steps import result_of
 
 PLAIN = SegmentationSettings(
     DenoiseSettings("none"), cleaning=CleaningSettings(min_voxels=1, fill_pores=False)
