@@ -14,7 +14,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 
 
 def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> None:
-    ball = trimesh.Trimesh(icosphere(4).vertices * 25.0, icosphere(4).faces, process=False)
+    ball = trimesh.Trimesh(icosphere(3).vertices * 25.0, icosphere(3).faces, process=False)
     ball.export(tmp_path / "ball.stl")
     result = command("fit", tmp_path / "ball.stl", "-o", tmp_path / "fit", "--l-max", 6)
     assert result.code == 0
@@ -22,8 +22,8 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
     entry = document["arrays"]["coefficients"]
     coefficients = np.frombuffer(base64.b64decode(entry["base64"]), "<f8").reshape(entry["shape"])
     assert coefficients.shape == (1, 49)
-    assert coefficients[0, 0] / np.sqrt(4 * np.pi) == pytest.approx(25.0, rel=2e-3)
-    assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=2e-3)
+    assert coefficients[0, 0] / np.sqrt(4 * np.pi) == pytest.approx(25.0, rel=4e-3)
+    assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=4e-3)
     assert document["particles"][0]["deviation_by_scale"].keys() == {"form", "roundness", "roughness"}
     assert document["particles"][0]["deviation_by_scale"]["form"] < 1e-3
     assert document["particles"][0]["wadell_roundness"] == pytest.approx(1.0, abs=2e-3)

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QLabel,
     QLineEdit,
     QPushButton,
-    QSpinBox,
     QStackedWidget,
     QWidget,
 )
@@ -39,13 +38,14 @@ from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.views.view import SceneView, ViewFrame
 from regolith_studio.ui.widgets.fields import (
     ChoiceBox,
-    DecimalField,
     ElidedCheckBox,
     ElidedComboBox,
     NumberSlider,
     NumberSpec,
+    decimal_field,
+    whole_field,
 )
-from regolith_studio.ui.widgets.forms import SettingsForm
+from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
 from regolith_studio.ui.widgets.labels import (
     ElidedLabel,
     FixedHeightText,
@@ -78,10 +78,16 @@ class SourceControls(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_source")
-        self.source, self.model = ElidedComboBox(), ElidedComboBox()
+        self.source = named(ElidedComboBox(), "model_source", tr("Source of the model"))
+        self.model = named(ElidedComboBox(), "model_model", tr("Kind of model"))
         self.l_max = NumberSlider(L_MAX)
-        self.half = ElidedCheckBox(tr("Fit to a random half only"))
-        self.open, self.fit = QPushButton(tr("Open …")), QPushButton(tr("Fit the model"))
+        half, tip = (
+            tr("Fit to a half"),
+            tr("The other half is then unknown to the model, as in its evaluation."),
+        )
+        self.half = named(ElidedCheckBox(tr("Fit to a random half only")), "model_half", half, tip)
+        self.open = named(QPushButton(tr("Open …")), "model_open", tr("Open …"))
+        self.fit = named(QPushButton(tr("Fit the model")), "model_fit", tr("Fit the model"))
         self.summary, self.findings = hint_label(), hint_label()
         self.forms = {key: SettingsForm(model.Settings, without=("l_max",)) for key, model in MODELS.items()}
         self._forms = QStackedWidget()
@@ -165,16 +171,6 @@ class SourceControls(QWidget):
             self._forms.addWidget(self.forms[key])
         self.model.setCurrentIndex(self.model.findData(DEFAULT_MODEL))
         self.l_max.setValue(default_degree(DEFAULT_MODEL))
-        self.half.setToolTip(tr("The other half is then unknown to the model, as in its evaluation."))
-        names = {
-            "source": tr("Source of the model"),
-            "model": tr("Kind of model"),
-            "half": tr("Fit to a half"),
-        }
-        for name in ("source", "model", "half", "open", "fit"):
-            widget = getattr(self, name)
-            widget.setObjectName(f"model_{name}")
-            widget.setAccessibleName(names.get(name, widget.text() if hasattr(widget, "text") else name))
         self.l_max.field.setObjectName("model_l_max")
 
     def _place(self) -> None:
@@ -201,16 +197,34 @@ class DrawControls(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_draw")
-        self.number, self.seed = QSpinBox(), QSpinBox()
-        self.limited = QCheckBox(tr("Limit the equivalent radius"))
-        self.smallest, self.largest = DecimalField(), DecimalField()
+        self.number = whole_field("model_number", tr("Number of particles"), 1, MAX_DRAWN, 100)
+        self.seed = whole_field("model_seed", tr("Seed of the draws"), 0, LARGEST_NUMBER)
+        limited = QCheckBox(tr("Limit the equivalent radius"))
+        self.limited = named(limited, "model_limited", tr("Limit the sizes"))
+        range_ = 1e-3, 1e9
+        spoken = tr("Smallest equivalent radius"), tr("Largest equivalent radius")
+        self.smallest = decimal_field("model_smallest", spoken[0], *range_, 1.0, " µm", 3)
+        self.largest = decimal_field("model_largest", spoken[1], *range_, 100.0, " µm", 3)
         captions = tr("Particles"), tr("r_eq [µm]")
         self.card = ResultView("model_drawn", captions, tr("Draw"), tr("Draw again"))
         self.card.caption(1, rich_symbol(captions[1]), tr("Smallest and largest equivalent radius"))
-        self.draw, self.adopt = self.card.button, QPushButton(tr("Use as population"))
-        self.names = QLineEdit()
+        self.draw = self.card.button
+        self.adopt = named(
+            QPushButton(tr("Use as population")),
+            "model_adopt",
+            tr("Use the drawn particles as population"),
+            tr("Open the drawn particles: to be coarsened and made a dataset."),
+        )
+        self.names = named(
+            QLineEdit(),
+            "model_names",
+            tr("Names of the components, the most numerous first"),
+            tr("Names of the components, separated by commas, the most numerous first."),
+        )
         self._names_label = QLabel(tr("Components"))
-        self._configure()
+        self.number.setGroupSeparatorShown(True)
+        for field in (self.smallest, self.largest):
+            field.setMinimumWidth(80)
         self._place()
         self.names.editingFinished.connect(self._rename)
         self.limited.toggled.connect(self._limit)
@@ -263,32 +277,6 @@ class DrawControls(QWidget):
     def _limit(self, limited: bool) -> None:
         self.smallest.setEnabled(limited)
         self.largest.setEnabled(limited)
-
-    def _configure(self) -> None:
-        self.number.setRange(1, MAX_DRAWN)
-        self.number.setValue(100)
-        self.number.setGroupSeparatorShown(True)
-        self.seed.setRange(0, 2**31 - 1)
-        for field, value in ((self.smallest, 1.0), (self.largest, 100.0)):
-            field.setDecimals(3)
-            field.setRange(1e-3, 1e9)
-            field.setValue(value)
-            field.setSuffix(" µm")
-            field.setMinimumWidth(80)
-        names = {
-            "number": tr("Number of particles"),
-            "seed": tr("Seed of the draws"),
-            "limited": tr("Limit the sizes"),
-            "smallest": tr("Smallest equivalent radius"),
-            "largest": tr("Largest equivalent radius"),
-            "names": tr("Names of the components, the most numerous first"),
-            "adopt": tr("Use the drawn particles as population"),
-        }
-        for name, words in names.items():
-            getattr(self, name).setObjectName(f"model_{name}")
-            getattr(self, name).setAccessibleName(words)
-        self.names.setToolTip(tr("Names of the components, separated by commas, the most numerous first."))
-        self.adopt.setToolTip(tr("Open the drawn particles: to be coarsened and made a dataset."))
 
     def _place(self) -> None:
         form = QFormLayout()

@@ -91,6 +91,33 @@ class RunPanel(QWidget):
                 _restore(field, state[name])
 
 
+class SeriesController:
+    """Starts and resumes the runs of a panel, which are kept; `stopping` says what closing would stop."""
+
+    def __init__(self, context: PageContext, panel: RunPanel, queue: str, stopping: str) -> None:
+        self._context = context
+        self.run = RunController(
+            context,
+            panel.card,
+            queue,
+            self.start,
+            tr("Finished runs are kept, and the button resumes."),
+            stopping,
+            panel.set_running,
+        )
+
+    def start(self) -> None:
+        if self.run.running:
+            return
+        try:
+            self._start()
+        except RegolithError as error:
+            self._context.toast.problem(tr(str(error)))
+
+    def _start(self) -> None:
+        raise NotImplementedError
+
+
 def _labels(entries: Mapping[str, tuple[str, str]]) -> dict[str, str]:
     return {key: label for key, (label, _) in entries.items()}
 
@@ -106,10 +133,7 @@ def _restore(field: Field, value: Any) -> None:
     elif isinstance(field, NumbersLine):
         field.setValue(str(value))
     elif isinstance(value, int | float):
-        if isinstance(field, QSpinBox):
-            field.setValue(int(value))
-        else:
-            field.setValue(float(value))
+        field.setValue(int(value) if isinstance(field, QSpinBox) else value)  # type: ignore[arg-type]
 
 
 PARAMETERS: Mapping[str, tuple[str, str]] = {
@@ -209,32 +233,16 @@ class CalibrationPanel(RunPanel):
         self.posterior.set_marker(calibration.next_values[0])
 
 
-class CalibrationController:
-    """Starts and resumes the calibration of a panel; `folder` tells where runs are kept."""
-
+class CalibrationController(SeriesController):
     def __init__(
         self, context: PageContext, panel: CalibrationPanel, setup: SetupPanel, folder: Callable[[], Path]
     ) -> None:
-        self._context, self._panel, self._setup, self._folder = context, panel, setup, folder
-        self.run = RunController(
-            context,
-            panel.card,
-            "calibration",
-            self.start,
-            tr("Finished runs are kept, and the button resumes."),
-            tr("A calibration would be stopped; it can be resumed later."),
-            panel.set_running,
-        )
+        stopping = tr("A calibration would be stopped; it can be resumed later.")
+        super().__init__(context, panel, "calibration", stopping)
+        self._panel, self._setup, self._folder = panel, setup, folder
 
-    def start(self) -> None:
-        if self.run.running:
-            return
-        try:
-            request = self._setup.request_of_series()
-            wanted = self._panel.request(self._setup.dataset, request)
-        except RegolithError as error:
-            self._context.toast.problem(tr(str(error)))
-            return
+    def _start(self) -> None:
+        wanted = self._panel.request(self._setup.dataset, self._setup.request_of_series())
         folder = self._folder() / "studies" / folder_name(wanted)
         self._panel.show_calibration(None)
         self.run.start(
@@ -414,32 +422,17 @@ class StudyPanel(RunPanel):
             self.chosen.emit(self._study.runs[row])
 
 
-class StudyController:
-    """Starts and resumes the study of a panel; `folder` tells where runs are kept."""
-
+class StudyController(SeriesController):
     def __init__(
         self, context: PageContext, panel: StudyPanel, setup: SetupPanel, folder: Callable[[], Path]
     ) -> None:
-        self._context, self._panel, self._setup, self._folder = context, panel, setup, folder
+        stopping = tr("A study of the angle of repose would be stopped; it can be resumed later.")
+        super().__init__(context, panel, "study", stopping)
+        self._panel, self._setup, self._folder = panel, setup, folder
         self._place = folder()
-        self.run = RunController(
-            context,
-            panel.card,
-            "study",
-            self.start,
-            tr("Finished runs are kept, and the button resumes."),
-            tr("A study of the angle of repose would be stopped; it can be resumed later."),
-            panel.set_running,
-        )
 
-    def start(self) -> None:
-        if self.run.running:
-            return
-        try:
-            request = self._request()
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
+    def _start(self) -> None:
+        request = self._request()
         name = "open-particles" if request.dataset is None else request.dataset.name
         folder = self._place = self._folder() / "studies" / f"{request.key}-{name}"
         note = tr("Runs, tables and figure are kept in {folder}.", folder=folder)
