@@ -267,12 +267,15 @@ QToolButton[role="fold"][focused="true"] {{ border-color: palette(highlight); }}
 QScrollArea {{ border: none; }}
 QScrollArea[role="texts"] {{ border: 1px solid transparent; border-radius: 4px; }}
 QScrollArea[role="texts"][focused="true"] {{ border-color: palette(highlight); }}
-QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid palette(placeholder-text);
-    border-radius: 3px; background: palette(base); }}
-QCheckBox::indicator:hover {{ border-color: palette(highlight); }}
+QCheckBox::indicator, QRadioButton::indicator {{ width: 1.05em; height: 1.05em; border-radius: 3px;
+    border: 1px solid palette(placeholder-text); background: palette(base); }}
+QCheckBox::indicator:hover, QRadioButton::indicator:hover {{ border-color: palette(highlight); }}
+QRadioButton::indicator {{ border-radius: 0.55em; }}
+QRadioButton::indicator:checked {{ border-color: palette(highlight); background: qradialgradient(
+    cx: 0.5, cy: 0.5, radius: 0.5, stop: 0.5 palette(highlight), stop: 0.6 palette(base)); }}
 QCheckBox::indicator:checked {{ background: palette(highlight); border-color: palette(highlight);
     image: url("{resource("icons", "tick.svg").as_posix()}"); }}
-QCheckBox::indicator:disabled {{ border-color: palette(mid); }}
+QCheckBox::indicator:disabled, QRadioButton::indicator:disabled {{ border-color: palette(mid); }}
 QCheckBox::indicator:checked:disabled {{ background: palette(mid); }}
 """
 

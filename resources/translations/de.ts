@@ -289,7 +289,7 @@
     </message>
     <message>
         <source>1 grain from 1 connected body</source>
-        <translation>1 Korn aus 1 zusammenhängenden Körper</translation>
+        <translation>1 Korn aus 1 zusammenhängendem Körper</translation>
     </message>
     <message>
         <source>1 grain from {bodies} connected bodies</source>
@@ -1417,7 +1417,7 @@
     </message>
     <message>
         <source>Correct</source>
-        <translation>Korrigieren</translation>
+        <translation>Korrektur</translation>
     </message>
     <message>
         <source>Correct for grain size</source>
@@ -8901,7 +8901,7 @@
     </message>
     <message>
         <source>{grains} grains from 1 connected body</source>
-        <translation>{grains} Körner aus 1 zusammenhängenden Körper</translation>
+        <translation>{grains} Körner aus 1 zusammenhängendem Körper</translation>
     </message>
     <message>
         <source>{grains} grains from {bodies} connected bodies</source>

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFrame,
     QLabel,
+    QRadioButton,
     QSplitter,
     QVBoxLayout,
     QWidget,
@@ -260,10 +261,11 @@ def test_that_coloured_text_can_be_read_on_every_ground(theme, name):
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK])
 @pytest.mark.parametrize("checked", [False, True])
-def test_that_a_check_box_stands_out_as_controls_must(app, shown, theme, checked):
+@pytest.mark.parametrize("kind", [QCheckBox, QRadioButton])
+def test_that_a_box_or_circle_to_check_stands_out_as_controls_must(app, shown, theme, kind, checked):
     """WCAG 2.2, 1.4.11: what shows a control and its state has a contrast of at least 3."""
     window = QWidget()
-    box = QCheckBox(window)
+    box = kind(window)
     box.setChecked(checked)
     QVBoxLayout(window).addWidget(box)
     apply_theme(app, theme, shown(window))
