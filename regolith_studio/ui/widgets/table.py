@@ -465,14 +465,15 @@ class ParticleTable(_FittedTable):
 class TextTable(_FittedTable):
     """Rows of texts; ``chosen`` carries the number of the row that the user has selected.
 
-    ``name``, ``spoken``: object name and accessible name. ``headings``: of the columns; texts are aligned
-    right but for the first column.
+    ``name``, ``spoken``: object name and accessible name. ``headings``: of the columns. ``numbers``: texts
+    are aligned right but for the first column.
     """
 
     chosen = Signal(int)
 
-    def __init__(self, name: str, spoken: str, headings: Sequence[str]) -> None:
+    def __init__(self, name: str, spoken: str, headings: Sequence[str], *, numbers: bool = True) -> None:
         super().__init__()
+        self._numbers = numbers
         self.setObjectName(name)
         self.setAccessibleName(spoken)
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -486,6 +487,8 @@ class TextTable(_FittedTable):
         FontRowHeight(self, 9)
         self.horizontalHeader().setHighlightSections(False)
         self.horizontalHeader().setStretchLastSection(True)
+        if not numbers:
+            self.horizontalHeader().setDefaultAlignment(Qt.AlignmentFlag.AlignLeft)
         self.rows = QStandardItemModel(0, len(headings), self)
         self.rows.setHorizontalHeaderLabels(list(headings))
         self.setModel(self.rows)
@@ -498,7 +501,7 @@ class TextTable(_FittedTable):
                 items = [QStandardItem(text) for text in texts]
                 for column, item in enumerate(items):
                     item.setToolTip(inert(tip))
-                    if column:
+                    if column and self._numbers:
                         item.setData(RIGHT, Qt.ItemDataRole.TextAlignmentRole)
                 self.rows.appendRow(items)
         self.resizeColumnsToContents()

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from PySide6.QtCore import Qt
 
 from regolith_studio.dataset.parameters import DRUM, ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import check_number
@@ -15,7 +16,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import repose_jobs
-from regolith_studio.ui.pages.repose.setup import CaseScale, SetupPanel
+from regolith_studio.ui.pages.repose.setup import CaseScale, SetupPanel, engine_table
 from regolith_studio.ui.widgets.forms import ParameterForm
 
 
@@ -190,3 +191,9 @@ def test_that_the_lights_say_how_far_a_case_is_from_what_is_recommended(page, da
     monkeypatch.setattr(page, "run_test", lambda: started.append(page.setup.particles.value()))
     page.limits.buttons[1].click()
     assert started == [1000]
+
+
+def test_that_sentences_about_engines_begin_at_the_left_where_they_are_seen(app):  # noqa: ARG001
+    rows = engine_table().rows
+    cells = [rows.item(row, column) for row in range(rows.rowCount()) for column in range(rows.columnCount())]
+    assert not any(Qt.AlignmentFlag.AlignRight & cell.textAlignment() for cell in cells)

@@ -518,7 +518,8 @@ def _row(*widgets: QWidget) -> QHBoxLayout:
 def engine_table() -> TextTable:
     """A row per property, a column per engine."""
     rows = engine_rows()
-    table = TextTable("repose_engines", tr("Engines"), [tr("Property"), *(row["label"] for row in rows)])
+    headings = [tr("Property"), *(row["label"] for row in rows)]
+    table = TextTable("repose_engines", tr("Engines"), headings, numbers=False)
     found = [row["version"] or translate(row["problem"]) for row in rows]
     texts = [[tr("Found"), *found]]
     texts += [[tr(label), *(tr(row[key]) for row in rows)] for key, label in CAPABILITY_LABELS.items()]
