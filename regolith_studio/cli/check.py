@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 
 from regolith_studio.cli.options import Json
-from regolith_studio.cli.terminal import print_json, run_with_progress
+from regolith_studio.cli.terminal import print_json, print_result, run_with_progress
 from regolith_studio.version import __version__
 
 
@@ -221,10 +221,7 @@ def warm_up(json: Json = False) -> None:
     run_with_progress(compile_first(*TASKS))
     if failed := [task for task in TASKS if not is_compiled(task)]:
         raise RegolithError(f"Not compiled: {', '.join(failed)}. It is compiled when it is first used.")
-    if json:
-        print_json({"compiled": list(TASKS)})
-    else:
-        typer.echo(f"Compiled: {', '.join(TASKS)}.")
+    print_result({"compiled": list(TASKS)}, f"Compiled: {', '.join(TASKS)}.", json)
 
 
 FILES = {
@@ -242,7 +239,6 @@ def install_desktop(
     json: Json = False,
 ) -> None:
     """Add the program to the menu of a Linux desktop, with icon and file types, for this user."""
-    from regolith_studio.cli.terminal import print_json
     from regolith_studio.errors import FileError, MissingRequirement, os_error_reason
 
     if sys.platform in ("win32", "darwin"):
@@ -257,12 +253,11 @@ def install_desktop(
     if changed:
         _update_databases()
     verb = "removed" if remove else "installed"
-    if json:
-        print_json({verb: list(map(str, changed))})
-    else:
-        typer.echo(
-            "\n".join(f"{verb.capitalize()} {path}" for path in changed) or "There is nothing to remove."
-        )
+    print_result(
+        {verb: list(map(str, changed))},
+        "\n".join(f"{verb.capitalize()} {path}" for path in changed) or "There is nothing to remove.",
+        json,
+    )
 
 
 def data_folder() -> Path:
@@ -302,7 +297,6 @@ def _update_databases() -> None:
 
 def forget(json: Json = False) -> None:
     """Remove preferences and compiled code; results, also those of the window, stay."""
-    from regolith_studio.cli.terminal import print_json
     from regolith_studio.errors import FileError, os_error_reason
     from regolith_studio.geometry.kernels import compiled_code
     from regolith_studio.session.preferences import preferences_path
@@ -313,7 +307,8 @@ def forget(json: Json = False) -> None:
             shutil.rmtree(path) if path.is_dir() else path.unlink()
         except OSError as error:
             raise FileError(f"{path} cannot be removed ({os_error_reason(error)}).") from error
-    if json:
-        print_json({"removed": list(map(str, there))})
-    else:
-        typer.echo("\n".join(f"Removed {path}" for path in there) or "There is nothing to remove.")
+    print_result(
+        {"removed": list(map(str, there))},
+        "\n".join(f"Removed {path}" for path in there) or "There is nothing to remove.",
+        json,
+    )

@@ -15,19 +15,14 @@ from regolith_studio.cli.options import (
     usage_errors,
     with_dataclass_options,
 )
-from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
+from regolith_studio.cli.terminal import command_group, print_result, run_with_progress
 from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
 from regolith_studio.readers.volumes.region import RegionSettings
 
 if TYPE_CHECKING:
     from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass, TrainingSet
 
-app = typer.Typer(
-    cls=CommandGroup,
-    help="Classifiers of voxels, trained on painted ones, and of segmented objects (section 2.1).",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
+app = command_group("Classifiers of voxels, trained on painted ones, and of segmented objects (section 2.1).")
 ClassifierFile = Annotated[
     Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
 ]
@@ -84,7 +79,7 @@ def train(
 
     from regolith_studio.imaging.segmentation.pixel_classifier import ClassifierSettings
     from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
-    from regolith_studio.jobs.classifier_jobs import train_on_labels, write_classifier
+    from regolith_studio.jobs.classifier_jobs import train_on_labels, write_training
     from regolith_studio.jobs.extraction_settings import VolumeInput
 
     with usage_errors():
@@ -97,15 +92,16 @@ def train(
     training: TrainingSet = run_with_progress(
         train_on_labels(given, painted, classes, settings, region.outside)
     )
-    write_classifier(output, training)
+    write_training(output, training)
     counts = {
         each.name: int(np.count_nonzero(training.labels == k)) for k, each in enumerate(training.classes)
     }
-    if json:
-        print_json({"classifier": str(output), "painted_voxels": counts})
-    else:
-        words = ", ".join(f"{count:,} of {name}" for name, count in counts.items() if count)
-        typer.echo(f"Trained on {words} voxels. Written to {output}.")
+    words = ", ".join(f"{count:,} of {name}" for name, count in counts.items() if count)
+    print_result(
+        {"classifier": str(output), "painted_voxels": counts},
+        f"Trained on {words} voxels. Written to {output}.",
+        json,
+    )
 
 
 @app.command("map")
@@ -134,10 +130,7 @@ def map_scan(
         given, training = contents.of(scan), read_classifier(classifier)
         region = RegionSettings(outside=outside)
     run_with_progress(map_probabilities(given, training, output, output.parent, region.outside))
-    if json:
-        print_json({"probabilities": str(output)})
-    else:
-        typer.echo(f"Written to {output}.")
+    print_result({"probabilities": str(output)}, f"Written to {output}.", json)
 
 
 @app.command("labels")
@@ -161,10 +154,11 @@ def painted_labels(
         given, training = contents.of(scan), read_classifier(classifier)
     run_with_progress(write_painted(given, training, output))
     classes = {each.name: number for number, each in enumerate(training.classes, start=1)}
-    if json:
-        print_json({"labels": str(output), "classes": classes})
-    else:
-        typer.echo(f"Written to {output}: {', '.join(f'{k} {name}' for name, k in classes.items())}.")
+    print_result(
+        {"labels": str(output), "classes": classes},
+        f"Written to {output}: {', '.join(f'{k} {name}' for name, k in classes.items())}.",
+        json,
+    )
 
 
 @app.command("objects")
@@ -187,7 +181,7 @@ def train_objects(
 ) -> None:
     """Train a classifier of segmented objects on a few examples, for `extract --objects`."""
     from regolith_studio.imaging.segmentation.object_classifier import OBJECT_CLASSES
-    from regolith_studio.jobs.classifier_jobs import ClassifiedObjects, train_on_objects, write_objects
+    from regolith_studio.jobs.classifier_jobs import ClassifiedObjects, train_on_objects, write_training
     from regolith_studio.jobs.scan_jobs import scratch_folder
     from regolith_studio.readers.shape_tables import read_object_examples
 
@@ -198,12 +192,13 @@ def train_objects(
         train_on_objects(given, settings, chosen, scratch_folder())
     )
     assert objects.training is not None
-    write_objects(output, objects.training)
-    if json:
-        print_json({"objects": str(output), "classified": objects.counts()})
-    else:
-        words = ", ".join(f"{count:,} {name}" for name, count in objects.counts().items())
-        typer.echo(f"Classified as {words}. Written to {output}.")
+    write_training(output, objects.training)
+    words = ", ".join(f"{count:,} {name}" for name, count in objects.counts().items())
+    print_result(
+        {"objects": str(output), "classified": objects.counts()},
+        f"Classified as {words}. Written to {output}.",
+        json,
+    )
 
 
 def _numbers(text: str, option: str) -> tuple[float, ...]:

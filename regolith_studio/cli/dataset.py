@@ -25,7 +25,13 @@ from regolith_studio.cli.options import (
     with_dataclass_options,
     words,
 )
-from regolith_studio.cli.terminal import CommandGroup, print_errors, print_json, run_with_progress
+from regolith_studio.cli.terminal import (
+    command_group,
+    print_errors,
+    print_json,
+    print_result,
+    run_with_progress,
+)
 from regolith_studio.dataset.parameters import DatasetSettings, ExportSettings, RepresentativesSettings
 from regolith_studio.settings import setting_of, settings_in
 
@@ -42,12 +48,7 @@ class DatasetSelection(DatasetSettings):
     count: int = setting_of(DatasetSettings, "count", default=0)
 
 
-app = typer.Typer(
-    cls=CommandGroup,
-    help="Datasets for DEM programs (section 2.5).",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
+app = command_group("Datasets for DEM programs (section 2.5).")
 
 
 @app.command("build")
@@ -149,10 +150,11 @@ def validate(
     from regolith_studio.dataset.validation import validate_dataset
 
     problems = [str(problem) for problem in validate_dataset(folder)]
-    if json:
-        print_json({"folder": str(folder), "valid": not problems, "problems": problems})
-    else:
-        typer.echo("\n".join(problems) or f"{folder} is a sound dataset.")
+    print_result(
+        {"folder": str(folder), "valid": not problems, "problems": problems},
+        "\n".join(problems) or f"{folder} is a sound dataset.",
+        json,
+    )
     raise typer.Exit(1 if problems else 0)
 
 

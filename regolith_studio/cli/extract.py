@@ -19,7 +19,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     with_dataclass_options,
 )
-from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+from regolith_studio.cli.terminal import print_errors, print_result, print_table, run_with_progress
 from regolith_studio.cli.volume_options import MAX_H, GrainOptions, VolumeOptions
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.error_messages import printable
@@ -364,7 +364,4 @@ def extract(
             done = run_with_progress(folder.extract(given, chosen, output.parent, executor, labels, kept))
             document = folder.finish(given, chosen, done)
     print_errors(f"{given.path.name}: {note}" for note in done.notes)
-    if json:
-        print_json(document)
-    else:
-        typer.echo(f"{done.extraction.summary} Written to {output}.")
+    print_result(document, f"{done.extraction.summary} Written to {output}.", json)

@@ -28,7 +28,13 @@ from regolith_studio.cli.options import (
     usage_errors,
     with_dataclass_options,
 )
-from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+from regolith_studio.cli.terminal import (
+    print_errors,
+    print_json,
+    print_result,
+    print_table,
+    run_with_progress,
+)
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE, FitOptions
 
 if TYPE_CHECKING:
@@ -202,10 +208,7 @@ def fit(
         holes = write_fits(output, sample, surfaces, level)
         print_errors(f"{name}: {sentence}" for name, sentence in holes.items())
         _print_far_fits(loaded.particles, fitted, request, jobs)
-        if json:
-            print_json(fits_document(sample))
-        else:
-            typer.echo(f"{len(sample.fits)} fits up to l = {l_max} in {output}")
+        print_result(fits_document(sample), f"{len(sample.fits)} fits up to l = {l_max} in {output}", json)
     raise typer.Exit(exit_code(loaded, len(sample.failed) + len(holes)))
 
 

@@ -12,7 +12,7 @@ from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chos
 from regolith_studio.cli.generate import write_particles
 from regolith_studio.cli.offscreen_process import draw_in_process, draw_three_views
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed, option_of
-from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+from regolith_studio.cli.terminal import print_errors, print_json, print_result, run_with_progress
 from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.errors import RegolithError
 
@@ -102,10 +102,11 @@ def demo(
         write_bytes(stage / page.DEMO_PAGE, page.demo_page(stage, problems).encode("utf-8"))
         files = sorted(path.relative_to(stage).as_posix() for path in stage.rglob("*") if path.is_file())
     print_errors(problems)
-    if json:
-        print_json({"folder": str(output), "files": files, "problems": problems})
-    else:
-        typer.echo(f"{len(files)} files in {output}; begin with {output / page.DEMO_PAGE}")
+    print_result(
+        {"folder": str(output), "files": files, "problems": problems},
+        f"{len(files)} files in {output}; begin with {output / page.DEMO_PAGE}",
+        json,
+    )
     raise typer.Exit(1 if problems else 0)
 
 

@@ -19,7 +19,7 @@ from regolith_studio.cli.options import (
     whole_numbers,
     with_dataclass_options,
 )
-from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+from regolith_studio.cli.terminal import print_errors, print_result, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.session.report.settings import ReportSettings
 
@@ -78,10 +78,7 @@ def gallery(
                     stage / names[1],
                 )
             drawn += names
-    if json:
-        print_json({"folder": str(output), "files": drawn})
-    else:
-        typer.echo(f"{len(drawn)} files in {output}")
+    print_result({"folder": str(output), "files": drawn}, f"{len(drawn)} files in {output}", json)
     raise typer.Exit(exit_code(loaded, failed))
 
 
@@ -116,10 +113,11 @@ def report(
         write_report(loaded.particles, output, settings, jobs), logged=True
     )
     print_errors(done.problems)
-    if json:
-        print_json({"folder": str(output), "files": list(done.files), "problems": list(done.problems)})
-    else:
-        typer.echo(f"{len(done.files)} files in {output}; begin with {output / PAGE}")
+    print_result(
+        {"folder": str(output), "files": list(done.files), "problems": list(done.problems)},
+        f"{len(done.files)} files in {output}; begin with {output / PAGE}",
+        json,
+    )
     raise typer.Exit(exit_code(loaded, len(done.problems)))
 
 

@@ -30,9 +30,10 @@ from regolith_studio.cli.repose_options import (
     varied_values,
 )
 from regolith_studio.cli.terminal import (
-    CommandGroup,
+    command_group,
     print_errors,
     print_json,
+    print_result,
     print_table,
     run_with_progress,
 )
@@ -41,12 +42,7 @@ from regolith_studio.dataset.parameters import DrumRotation, rpm_of
 if TYPE_CHECKING:
     from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun
 
-app = typer.Typer(
-    cls=CommandGroup,
-    help="The angle of repose: simulate a lifting cylinder or a drum, measure a pile.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
+app = command_group("The angle of repose: simulate a lifting cylinder or a drum, measure a pile.")
 Figures = Annotated[
     Path | None,
     output_option("Folder for repose.json and the figure of the sections (Fig. 9).", "DIR", claim_folder),
@@ -236,10 +232,7 @@ def measure(
             (stage / "repose.json").write_bytes(json_bytes(document))
             write_section_figure(points, diameters, measurement, stage)
     print_errors(measurement.warnings)
-    if json:
-        print_json(document)
-    else:
-        typer.echo(in_words(document))
+    print_result(document, in_words(document), json)
 
 
 def positions_in(file: Path, unit: str, diameter: float, columns: str = "") -> tuple[Any, Any]:
@@ -284,10 +277,7 @@ def run(
 ) -> None:
     """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
     done = single.simulate(dataset, output, how.request(cohesion=cohesion, **single.case))
-    if json:
-        print_json(done.document)
-    else:
-        typer.echo(run_in_words(done.document))
+    print_result(done.document, run_in_words(done.document), json)
 
 
 @app.command("drum")
@@ -459,10 +449,7 @@ def verify(
     with usage_errors():
         done = run_with_progress(verify_engine(engine, quick))
     document = certificate_document(done)
-    if json:
-        print_json(document)
-    else:
-        typer.echo(certificate_in_words(document))
+    print_result(document, certificate_in_words(document), json)
     raise typer.Exit(0 if done.passed else 1)
 
 

@@ -17,7 +17,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     with_dataclass_options,
 )
-from regolith_studio.cli.terminal import print_json
+from regolith_studio.cli.terminal import print_result
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, CoarseningSettings
 
 if TYPE_CHECKING:
@@ -70,10 +70,7 @@ def serve(
     server = ViewServer(_particles(meshes, reading), choices, host, port)
 
     def report() -> None:
-        if json:
-            print_json({"url": server.url})
-        else:
-            typer.echo(f"The three views are at {server.url} until Ctrl+C.")
+        print_result({"url": server.url}, f"The three views are at {server.url} until Ctrl+C.", json)
         if browser:
             webbrowser.open(server.url)
 

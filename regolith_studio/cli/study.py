@@ -30,7 +30,7 @@ from regolith_studio.cli.options import (
 )
 from regolith_studio.cli.repose_options import Contact, EngineKey, Measure, Particles, Test
 from regolith_studio.cli.terminal import (
-    CommandGroup,
+    command_group,
     print_errors,
     print_json,
     print_table,
@@ -46,9 +46,7 @@ if TYPE_CHECKING:
     from regolith_studio.studies.loss_variants import LossVariant
 
 
-app = typer.Typer(
-    cls=CommandGroup, help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None
-)
+app = command_group("Tables and figures over a sample.")
 
 Below = Annotated[
     float,

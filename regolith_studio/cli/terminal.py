@@ -83,6 +83,14 @@ def print_json(document: Any) -> None:
     typer.echo(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False))
 
 
+def print_result(document: Any, text: str, as_json: bool) -> None:
+    """The result of a command on stdout, as JSON or in words."""
+    if as_json:
+        print_json(document)
+    else:
+        typer.echo(text)
+
+
 def print_table(table: "Table") -> None:
     """A table on stdout: words to the left, numbers to the right, two spaces between."""
     from regolith_studio.io.tables import rows_as_text
@@ -112,6 +120,11 @@ class CommandGroup(TyperGroup):
         rows = [(name, _first_paragraph(command.help)) for name, command in commands.items() if command]
         with formatter.section("Commands"):
             formatter.write_dl(rows)
+
+
+def command_group(text: str) -> typer.Typer:
+    """A group of commands with this line of help."""
+    return typer.Typer(cls=CommandGroup, help=text, no_args_is_help=True, rich_markup_mode=None)
 
 
 def _first_paragraph(text: str | None) -> str:

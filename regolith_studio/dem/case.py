@@ -152,19 +152,7 @@ class PreparedCase:
         object.__setattr__(self, "shapes", shapes)
 
     def __reduce__(self) -> tuple[Callable[..., "PreparedCase"], tuple[Any, ...]]:
-        draws = (self.class_index, self.diameters, self.coarse_graining)
-        return PreparedCase, (
-            self.case,
-            self.shapes,
-            *draws,
-            self.dataset_name,
-            self.dataset_hash,
-            self.n_facets,
-            self.parts,
-            self.inertias,
-            self.filling,
-            self.filling_notes,
-        )
+        return PreparedCase, tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
     def __len__(self) -> int:
         return len(self.diameters)

@@ -1,7 +1,9 @@
 """The interface of DEM engines: availability, capabilities, running a prepared case, the checks after it."""
 
 from collections.abc import Generator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -45,6 +47,14 @@ class Availability:
     @property
     def there(self) -> bool:
         return not self.problem
+
+    @classmethod
+    def of(cls, problem: str, *packages: str) -> "Availability":
+        """Version of the first of these packages that is installed, or the problem that none is."""
+        for package in packages:
+            with suppress(PackageNotFoundError):
+                return cls(version(package))
+        return cls(problem=problem)
 
 
 @dataclass(frozen=True)

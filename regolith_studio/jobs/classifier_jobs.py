@@ -251,16 +251,19 @@ def _slice_probabilities(
     return classifier.grain_probability(own), own
 
 
-def save_classifier(path: Path, training: TrainingSet, scan: Path) -> Steps:
-    """Write a classifier's file with the SHA-256 of the scan that was painted; returns the path."""
+def save_training(path: Path, training: TrainingSet | ObjectTraining, scan: Path) -> Steps:
+    """Write a classifier's file with the SHA-256 of the scan that its examples are of; returns the path."""
     yield Started(Message(N_("Writing {name}"), name=path.name))
-    write_classifier(path, replace(training, scan=volume_sha256(scan)))
+    write_training(path, replace(training, scan=volume_sha256(scan)))
     return path
 
 
-def write_classifier(path: Path, training: TrainingSet) -> None:
-    """Write a classifier's file."""
-    write_bytes(path, canonical_json(training_document(training)).encode("ascii"))
+def write_training(path: Path, training: TrainingSet | ObjectTraining) -> None:
+    """Write the file of a classifier of voxels or of objects."""
+    document = (
+        training_document(training) if isinstance(training, TrainingSet) else objects_document(training)
+    )
+    write_bytes(path, canonical_json(document).encode("ascii"))
 
 
 Examples = Sequence[tuple[tuple[int, int, int], int]]
@@ -353,15 +356,3 @@ def correct_grains(
     except BaseException:
         scratch.close()
         raise
-
-
-def save_objects(path: Path, training: ObjectTraining, scan: Path) -> Steps:
-    """Write the file of an object classifier with the SHA-256 of its examples' scan; returns the path."""
-    yield Started(Message(N_("Writing {name}"), name=path.name))
-    write_objects(path, replace(training, scan=volume_sha256(scan)))
-    return path
-
-
-def write_objects(path: Path, training: ObjectTraining) -> None:
-    """Write the file of an object classifier."""
-    write_bytes(path, canonical_json(objects_document(training)).encode("ascii"))

@@ -37,9 +37,6 @@ from regolith_studio.readers.particles import (
 from regolith_studio.readers.settings import AS_USUAL, ReadingSettings
 from regolith_studio.steps import result_of
 
-"""Everything is fitted to this degree once; lower ones are truncations of that fit."""
-
-
 LARGE = 200_000
 """Faces of a mesh from which on the parts of its measurement are reported: they take more than a second."""
 

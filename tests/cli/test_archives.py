@@ -1,6 +1,5 @@
 """``describe``, ``coarsen`` and ``dataset build`` of an archive as libraries of simulants are."""
 
-import csv
 import json
 import shutil
 import zipfile
@@ -10,6 +9,7 @@ import pytest
 
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.readers import archives
+from tests.files import csv_rows
 
 
 @pytest.fixture(scope="module")
@@ -29,11 +29,6 @@ def library(tmp_path_factory, grains: Path) -> Path:
     return path
 
 
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
 NAMES = ["grain-a", "grain-b", "75m_grain-a", "75m_grain-b", "grain-c"]
 
 
@@ -43,7 +38,7 @@ def test_that_an_archive_is_described_into_a_folder_and_resumed(command, library
     assert result.code == 1
     assert "nothing.stl is empty: it has no bytes at all." in result.err
     assert f"6 particles, 1 problem in {output}" in " ".join(result.out.split())
-    table = rows(output / "descriptors.csv")
+    table = csv_rows(output / "descriptors.csv")
     assert [row["name"] for row in table] == NAMES
     assert [row["group"] for row in table] == ["75-300"] * 2 + ["75m"] * 3
     plain = {each["name"]: each for each in command("describe", grains, "--json").json}
@@ -52,7 +47,7 @@ def test_that_an_archive_is_described_into_a_folder_and_resumed(command, library
         assert float(row["volume [um^3]"]) == pytest.approx(expected["volume"])
     assert float(table[0]["width [um]"]) == pytest.approx(40, rel=0.02)
     assert float(table[0]["thickness_over_width"]) == pytest.approx(15 / 20, rel=0.02)
-    assert [row["name"] for row in rows(output / "failed.csv")] == ["nothing"]
+    assert [row["name"] for row in csv_rows(output / "failed.csv")] == ["nothing"]
     again = command("describe", library, "-o", output, "--chords", "--resume", "--json")
     assert (again.json["particles"], again.code) == (0, 1)  # nothing was left to do
 

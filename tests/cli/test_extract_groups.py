@@ -1,6 +1,5 @@
 """``extract`` from several scans: a folder for each, tables of all, and a second run that goes on."""
 
-import csv
 import json
 import re
 import shutil
@@ -15,6 +14,7 @@ import pytest
 
 from regolith_studio.session.batch.scan_groups import compare_groups
 from regolith_studio.session.outputs.particles import ExtractionFolder
+from tests.files import contents, csv_rows
 
 RADII = {"fine": (5, 6), "coarse": (8, 9)}
 
@@ -37,14 +37,6 @@ def scans(tmp_path: Path) -> Path:
     return folder
 
 
-def rows_of(path: Path) -> list[dict[str, str]]:
-    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
-
-
-def files_of(folder: Path) -> dict[str, bytes]:
-    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
-
-
 ASKED = ("--kind", "labels", "--voxel-size", 2)
 
 
@@ -56,12 +48,12 @@ def test_that_each_scan_of_a_folder_is_a_group_and_tables_hold_all(
     assert "extracted: 2, kept from an earlier run: 0" in result.out
     alone = command("extract", scans / "fine.npy", "-o", tmp_path / "fine", *ASKED)
     assert alone.code == 0
-    assert files_of(tmp_path / "fine") == files_of(tmp_path / "all" / "fine")
-    table = rows_of(tmp_path / "all" / "particles.csv")
+    assert contents(tmp_path / "fine") == contents(tmp_path / "all" / "fine")
+    table = csv_rows(tmp_path / "all" / "particles.csv")
     assert [row["group"] for row in table] == ["coarse", "coarse", "fine", "fine"]
     radii = [float(row["equivalent_radius [um]"]) for row in table]
     assert radii == pytest.approx([16, 18, 10, 12], rel=0.02)
-    groups = {(row["descriptor"], row["group"]): row for row in rows_of(tmp_path / "all" / "groups.csv")}
+    groups = {(row["descriptor"], row["group"]): row for row in csv_rows(tmp_path / "all" / "groups.csv")}
     coarse = groups["equivalent_radius", "coarse"]
     assert float(coarse["count"]) == 2
     assert float(coarse["ks_distance"]) == 1.0
@@ -75,13 +67,13 @@ def test_that_a_second_run_extracts_only_what_is_missing_or_has_changed(
     output = tmp_path / "all"
     call = ("extract", scans / "fine.npy", scans / "coarse.npy", "-o", output, *ASKED)
     assert "extracted: 2" in command(*call).out
-    before = files_of(output)
+    before = contents(output)
     shutil.rmtree(output / "fine")
     assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
-    assert files_of(output) == before
+    assert contents(output) == before
     (output / "coarse" / "particle_0001.stl").unlink()
     assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
-    assert files_of(output) == before
+    assert contents(output) == before
     np.save(scans / "fine.npy", balls(RADII["fine"], value=5))
     assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
     assert "extracted: 2" in command(*call, "--min-voxels", 100).out
@@ -107,7 +99,7 @@ def test_that_a_run_that_was_killed_goes_on_and_leaves_nothing_behind(command, t
     result = command("extract", *options)
     assert "extracted: 1, kept from an earlier run: 1" in result.out, result.err
     assert sorted(path.name for path in output.iterdir()) == ["a", "b", "groups.csv", "particles.csv"]
-    assert len(rows_of(output / "particles.csv")) == 2 + 12
+    assert len(csv_rows(output / "particles.csv")) == 2 + 12
 
 
 def test_that_a_broken_scan_is_named_and_the_others_are_extracted(
@@ -128,7 +120,7 @@ def test_that_scans_of_one_name_are_told_apart_by_their_folders(command, scans: 
         shutil.copy(scans / f"{name}.npy", tmp_path / name / "recon.npy")
     paths = [tmp_path / name / "recon.npy" for name in RADII]
     assert command("extract", *paths, "-o", tmp_path / "all", *ASKED).code == 0
-    table = rows_of(tmp_path / "all" / "particles.csv")
+    table = csv_rows(tmp_path / "all" / "particles.csv")
     assert [row["group"] for row in table] == ["fine_recon", "fine_recon", "coarse_recon", "coarse_recon"]
     assert (tmp_path / "all" / "fine_recon" / "particle_0001.stl").is_file()
 
@@ -188,7 +180,7 @@ def test_that_a_table_gives_single_scans_settings_of_their_own(command, scans: P
     output = tmp_path / "all"
     call = ("extract", scans, "-o", output, *ASKED, "--settings", table)
     assert command(*call).code == 0
-    radii = {row["group"]: float(row["equivalent_radius [um]"]) for row in rows_of(output / "particles.csv")}
+    radii = {row["group"]: float(row["equivalent_radius [um]"]) for row in csv_rows(output / "particles.csv")}
     assert radii == pytest.approx({"fine": 3 * 6, "coarse": 2 * 8}, rel=0.03)
     chosen = json.loads((output / "coarse" / "extraction.json").read_text())
     assert chosen["region"]["crop"] == ":26,:,:"
@@ -205,7 +197,7 @@ def test_that_a_row_may_name_the_recipe_of_a_scan_beside_the_table(
     shutil.copy(tmp_path / "a" / "extraction.json", tmp_path / "strict.json")
     table = with_table(scans, "scan,recipe", "fine,strict.json")
     assert command("extract", scans, "-o", tmp_path / "all", *ASKED, "--settings", table).code == 0
-    rows = rows_of(tmp_path / "all" / "particles.csv")
+    rows = csv_rows(tmp_path / "all" / "particles.csv")
     assert [row["group"] for row in rows] == ["coarse", "coarse", "fine"]
 
 

@@ -1,6 +1,5 @@
 """``generate`` and ``study population``: what they write, and that a stranger can read it."""
 
-import csv
 import json
 from pathlib import Path
 
@@ -12,11 +11,7 @@ from regolith_studio.cli.entry import run
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.triangles import stl_bytes
-
-
-def rows_of(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+from tests.files import csv_rows
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +68,7 @@ def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
         "folder": str(tmp_path / "v")
     }
     assert result.json["model"] == "recombined"
-    rows = rows_of(tmp_path / "v" / "particles.csv")
+    rows = csv_rows(tmp_path / "v" / "particles.csv")
     assert [row["name"] for row in rows] == [f"virtual-00000{i}" for i in range(1, 6)]
     for row in rows:
         body = trimesh.load_mesh(tmp_path / "v" / f"{row['name']}.stl")
@@ -94,7 +89,7 @@ def test_that_a_mesh_of_the_sample_that_cannot_be_read_is_named_and_makes_the_ex
     result = command("generate", *meshes, *asked, "-o", tmp_path / "drawn")
     assert result.code == 1
     assert "broken.stl" in result.err
-    assert len(rows_of(tmp_path / "drawn" / "particles.csv")) == 2
+    assert len(csv_rows(tmp_path / "drawn" / "particles.csv")) == 2
 
 
 @pytest.mark.slow
@@ -125,7 +120,7 @@ def test_that_coefficients_of_many_particles_go_into_one_archive(command, tmp_pa
         "particles.csv",
         "particles.npz",
     ]
-    rows = rows_of(tmp_path / "v" / "particles.csv")
+    rows = csv_rows(tmp_path / "v" / "particles.csv")
     with np.load(tmp_path / "v" / "particles.npz") as arrays:
         assert arrays["coefficients"].shape == (2000, 121)
         assert arrays["names"].tolist() == [row["name"] for row in rows]
@@ -169,7 +164,7 @@ def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: 
     wanted = ("--model", "mixture_field", "--set", "n_components=2", "--format", "npz", "--l-max", 3)
     result = command("generate", fit, "-n", 40, "-o", tmp_path / "v", *wanted, "--names", "basalt, glass")
     assert result.code == 0, result.err
-    groups = [row["group"] for row in rows_of(tmp_path / "v" / "particles.csv")]
+    groups = [row["group"] for row in csv_rows(tmp_path / "v" / "particles.csv")]
     assert set(groups) <= {"basalt", "glass"}
     document = json.loads((tmp_path / "v" / "generation.json").read_text())
     assert {part["name"]: part["drawn"] for part in document["components"]} == {
@@ -227,7 +222,7 @@ def test_that_models_are_judged_on_what_they_have_not_seen(command, fit: Path, t
     assert result.code == 0, result.err
     written = {path.name for path in (tmp_path / "p").iterdir()}
     assert written == {*result.json["files"], "population_study.sha256"}
-    distances = rows_of(tmp_path / "p" / "population_distances.csv")
+    distances = csv_rows(tmp_path / "p" / "population_distances.csv")
     assert len(distances) == 2 * 2 * 5
     for row in distances:
         assert float(row["wasserstein_low [%]"]) <= float(row["wasserstein [%]"])

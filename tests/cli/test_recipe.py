@@ -11,6 +11,7 @@ import trimesh
 from regolith_studio.cli.entry import run
 from regolith_studio.session.outputs.summary import Summary, summary_page
 from regolith_studio.session.recipe import recipe_of
+from tests.files import contents
 
 
 def recipe(folder: Path, grains: Path, **entries: object) -> Path:
@@ -107,10 +108,6 @@ def test_that_a_run_is_resumed_on_the_command_line(command, grains: Path, tmp_pa
     assert again.code == 0
 
 
-def tree(folder: Path) -> dict[str, bytes]:
-    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
-
-
 STANDING = {
     "count": 2,
     "weighting": "volume",
@@ -139,13 +136,13 @@ def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
         command("dataset", "export", tmp_path / "ds", "-o", tmp_path / "ex", "--to", "yade,rocky", *told).code
         == 0
     )
-    assert tree(tmp_path / "out" / "dataset") == tree(tmp_path / "ds")
-    assert tree(tmp_path / "out" / "exports") == tree(tmp_path / "ex")
+    assert contents(tmp_path / "out" / "dataset") == contents(tmp_path / "ds")
+    assert contents(tmp_path / "out" / "exports") == contents(tmp_path / "ex")
     assert len(list((tmp_path / "out" / "meshes").glob("*.stl"))) > 2
     only = {"descriptors": False, "meshes": False, "summary": False}
     alone = recipe(tmp_path, grains, **whole, outputs=only)
     assert command("run", alone, "-o", tmp_path / "alone", "--jobs", 2).code == 0
-    assert tree(tmp_path / "alone" / "dataset") == tree(tmp_path / "ds")
+    assert contents(tmp_path / "alone" / "dataset") == contents(tmp_path / "ds")
 
 
 def test_that_a_wish_for_the_dataset_that_cannot_be_met_is_refused_before_the_work(

@@ -1,19 +1,14 @@
 """``study facets``, ``tradeoff``, ``sensitivity`` and the rows of ``study coarsening``."""
 
-import csv
 from pathlib import Path
 
 import pytest
 
 from regolith_studio.io.triangles import stl_bytes
 from tests.coarsening.compound.unions import dumbbell
+from tests.files import csv_rows
 
 ONE = ("--target", "particle", "--json")
-
-
-def rows_of(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: Path) -> None:
@@ -22,7 +17,7 @@ def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: 
     )
     assert result.code == 0, result.err
     assert set(result.json["files"]) >= {f"facets.{end}" for end in ("csv", "json", "png", "svg")}
-    rows = rows_of(tmp_path / "s" / "facets.csv")
+    rows = csv_rows(tmp_path / "s" / "facets.csv")
     volume = [float(row["rmsre [%]"]) for row in rows if row["descriptor"] == "volume"]
     assert volume[0] > volume[1] > 0  # fewer faces, larger error
 
@@ -31,7 +26,7 @@ def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: 
 def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, tmp_path: Path) -> None:
     result = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *ONE)
     assert result.code == 0, result.err
-    rows = rows_of(tmp_path / "s" / "tradeoff.csv")
+    rows = csv_rows(tmp_path / "s" / "tradeoff.csv")
     distance = [float(row["jaccard_distance [%]"]) for row in rows]
     error = [float(row["mean_rmsre [%]"]) for row in rows]
     assert rows[0]["row"] == "Overlap only"
@@ -46,7 +41,7 @@ def test_that_one_weight_at_a_time_is_changed(command, grains: Path, tmp_path: P
         "study", "sensitivity", grains / "grain-a.stl", "-o", tmp_path / "s", *chosen, *quick, *ONE
     )
     assert result.code == 0, result.err
-    changes = [row["change"] for row in rows_of(tmp_path / "s" / "sensitivity.csv")]
+    changes = [row["change"] for row in csv_rows(tmp_path / "s" / "sensitivity.csv")]
     assert list(dict.fromkeys(changes)) == ["Overlap × 0", "Overlap × 2", "Volume × 0", "Volume × 2"]
 
 
@@ -55,7 +50,7 @@ def test_that_the_polyhedra_of_each_loss_are_drawn(command, grains: Path, tmp_pa
     result = command("study", "solids", grains, "-o", tmp_path / "s", "--facets", 12, *losses, *ONE)
     assert result.code == 0, result.err
     assert set(result.json["files"]) == {f"solids.{end}" for end in ("csv", "json", "png", "svg")}
-    rows = rows_of(tmp_path / "s" / "solids.csv")
+    rows = csv_rows(tmp_path / "s" / "solids.csv")
     assert [row["name"] for row in rows] == ["grain-a", "grain-b", "grain-c"] * 2
     assert all(float(row["volume [%]"]) < 1e-4 for row in rows[3:])
     assert not (tmp_path / "s" / "journal").exists()
@@ -67,7 +62,7 @@ def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_
         "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *losses, *ONE
     )
     assert result.code == 0, result.err
-    rows = rows_of(tmp_path / "s" / "coarsening_rmsre.csv")
+    rows = csv_rows(tmp_path / "s" / "coarsening_rmsre.csv")
     met = {(row["row"], row["descriptor"]): float(row["rmsre [%]"]) < 1e-4 for row in rows}
     assert met[("Volume only", "volume")]
     assert not met[("Volume only", "sphericity")]
@@ -84,7 +79,7 @@ def test_that_a_compound_is_a_row_of_its_own(command, study: str, tmp_path: Path
     result = command("study", study, tmp_path / "waist.stl", "-o", tmp_path / "s", *loss, *options)
     assert result.code == 0, result.err
     table = {"coarsening": "coarsening_rmsre.csv"}.get(study, f"{study}.csv")
-    rows = rows_of(tmp_path / "s" / table)
+    rows = csv_rows(tmp_path / "s" / table)
     if study == "coarsening":
         rows = [row for row in rows if row["descriptor"] == "convex_hull_volume"]
     column = "rmsre [%]" if study == "coarsening" else "convex_hull_volume [%]"

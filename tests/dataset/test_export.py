@@ -16,6 +16,7 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import particle_count
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.io.output_lock import leftovers
+from tests.files import contents
 
 OPTIONS = ExportOptions(n_particles=12, n_spheres=4)
 EXPECTED = {
@@ -26,12 +27,6 @@ EXPECTED = {
 
 def written(dataset: Dataset, key: str, folder: Path, options: ExportOptions = OPTIONS) -> Path:
     return write_export(dataset, EXPORTERS[key], folder, options, accept_loss=True).folder
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {
-        path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()
-    }
 
 
 def test_that_all_formats_are_found_by_themselves() -> None:

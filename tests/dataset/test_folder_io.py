@@ -28,14 +28,9 @@ from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Particle
+from tests.files import contents
 
 from .example import Coarse, entry
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {
-        p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()
-    }
 
 
 def test_that_a_dataset_comes_back_as_it_was(tmp_path: Path, make_dataset) -> None:
@@ -256,21 +251,17 @@ def shapes() -> Iterator[StoredShape]:
     return (stored_shape(*pair) for pair in PAIRS)
 
 
-def content(folder: Path) -> dict[str, bytes]:
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*.*")}
-
-
 def test_that_both_ways_of_writing_leave_the_same_bytes(tmp_path: Path) -> None:
     write_dataset(tmp_path / "whole", build_dataset(PAIRS, name="a set", provenance=STORY))
     write_stored(tmp_path / "stream", shapes, 3, name="a set", provenance=STORY)
-    assert content(tmp_path / "stream") == content(tmp_path / "whole")
+    assert contents(tmp_path / "stream") == contents(tmp_path / "whole")
     assert validate_dataset(tmp_path / "stream") == []
     assert len(read_dataset(tmp_path / "stream")) == 3
 
 
 def test_that_a_shape_that_breaks_the_schema_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
     write_stored(tmp_path / "set", shapes, 3, name="a set", provenance=STORY)
-    before = content(tmp_path / "set")
+    before = contents(tmp_path / "set")
 
     def broken() -> Iterator[StoredShape]:
         for shape in shapes():
@@ -278,7 +269,7 @@ def test_that_a_shape_that_breaks_the_schema_leaves_the_folder_as_it_was(tmp_pat
 
     with pytest.raises(DatasetError, match=r"grain-0, n_members"):
         write_stored(tmp_path / "set", broken, 3, name="a set", provenance=STORY)
-    assert content(tmp_path / "set") == before
+    assert contents(tmp_path / "set") == before
     assert [path.name for path in tmp_path.iterdir()] == ["set"]
 
 

@@ -29,6 +29,7 @@ from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
+from tests.files import contents
 from tests.jobs.small_jobs import name_and_numbers, square, throttle
 
 pytest.importorskip("distributed")
@@ -47,17 +48,10 @@ def small_recipe(n: int = 12) -> Recipe:
     )
 
 
-def digests(folder: Path) -> dict[str, bytes]:
-    """Every file but the journal's."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    names = {path.relative_to(folder): path for path in files}
-    return {name.as_posix(): path.read_bytes() for name, path in names.items() if name.parts[0] != "journal"}
-
-
 def done(folder: Path, executor: Executor | int, n: int = 12) -> dict[str, bytes]:
     for _ in run_recipe(small_recipe(n), folder.parent, folder, executor, chunk=2):
         pass
-    return digests(folder)
+    return contents(folder)
 
 
 def free_port() -> int:
@@ -129,7 +123,7 @@ def test_that_a_cluster_that_loses_a_worker_ends_with_the_same_bytes(
                 there.workers[0].send_signal(signal.SIGKILL)
                 killed = True
     assert killed
-    assert digests(tmp_path / "out") == alone
+    assert contents(tmp_path / "out") == alone
 
 
 @pytest.mark.slow
@@ -144,7 +138,7 @@ def test_that_a_cluster_that_goes_away_is_one_sentence_and_the_run_can_go_on(
                     there.scheduler.kill()
     for _ in run_recipe(small_recipe(), tmp_path, tmp_path / "out", resume=True):
         pass
-    assert digests(tmp_path / "out") == alone
+    assert contents(tmp_path / "out") == alone
 
 
 def signed(folder: Path, name: str) -> None:
@@ -250,7 +244,7 @@ def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alo
     def dataset(place: str, executor: Executor | int) -> dict[str, bytes]:
         for _ in run_recipe(recipe, tmp_path, tmp_path / place / "out", executor, chunk=2):
             pass
-        return digests(tmp_path / place / "out")
+        return contents(tmp_path / place / "out")
 
     with closing(Executor.on_cluster(workers=2)) as executor:
         assert executor.workers == 2

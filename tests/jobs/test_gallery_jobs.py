@@ -16,6 +16,7 @@ from regolith_studio.steps import result_of
 from regolith_studio.studies.loss_variants import paper_variants
 from regolith_studio.studies.polyhedron_gallery import gallery_table
 from tests.coarsening.compound.unions import dumbbell
+from tests.steps import played
 
 
 @pytest.fixture(scope="module")
@@ -26,12 +27,7 @@ def coarsening_request() -> CoarseningRequest:
 def test_that_each_particle_is_coarsened_once_for_each_row(coarsening_request: CoarseningRequest) -> None:
     sphere = icosphere(3)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2)]
-    events, steps = [], coarsen_gallery(eggs, coarsening_request)
-    try:
-        while True:
-            events.append(next(steps))
-    except StopIteration as end:
-        cells = end.value
+    events, cells = played(coarsen_gallery(eggs, coarsening_request))
     rows = len(paper_variants())
     assert {(each.row, each.column) for each in cells} == set(np.ndindex(rows, 2))
     assert all(each.outcome.coarsened.n_facets == 12 for each in cells)
@@ -46,12 +42,7 @@ def test_that_a_particle_that_cannot_be_coarsened_does_not_stop_the_rest(
 ) -> None:
     sphere = icosphere(2)
     flat = Particle("flat", Mesh(sphere.vertices * [1, 1, 0], sphere.faces))
-    steps = coarsen_gallery([flat, Particle("ball", sphere)], coarsening_request)
-    try:
-        while True:
-            next(steps)
-    except StopIteration as end:
-        cells = end.value
+    cells = result_of(coarsen_gallery([flat, Particle("ball", sphere)], coarsening_request))
     by_name = {name: [cell for cell in cells if cell.outcome.name == name] for name in ("flat", "ball")}
     assert all(each.outcome.coarsened is None and each.outcome.problem for each in by_name["flat"])
     assert all(each.outcome.coarsened is not None for each in by_name["ball"])

@@ -12,20 +12,15 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.lecture_jobs import draw_field, trace_annealing, trace_degrees
 from regolith_studio.shape_models.materials import materials
+from tests.steps import played
 
 WEIGHTS = LossWeights.from_preset("all")
 
 
 def results_of(steps):
     """Partial results, and the result."""
-    partial = []
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            return partial, end.value
-        if isinstance(step, Partial):
-            partial.append(step.value)
+    received, result = played(steps)
+    return [step.value for step in received if isinstance(step, Partial)], result
 
 
 @pytest.fixture(scope="module")

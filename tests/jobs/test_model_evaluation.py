@@ -7,19 +7,16 @@ from regolith_studio.jobs.events import Partial, Progress, Started, Step
 from regolith_studio.jobs.model_jobs import GenerationRequest, ModelEvaluationResult, draw, evaluate_models
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import result_of
 from regolith_studio.studies.population_tables import CONTAINED, common_grid, contours, pair_density
+from tests.steps import played
 
 
 @pytest.fixture(scope="module")
 def job_steps() -> tuple[list[Step], ModelEvaluationResult]:
     draws = materials()["ma165"].model(3).draw(24, 0)
     sample = Sample(np.stack([draws.particle(i).values for i in range(24)]))
-    steps, reported = [], evaluate_models(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1)
-    while True:
-        try:
-            steps.append(next(reported))
-        except StopIteration as end:
-            return steps, end.value
+    return played(evaluate_models(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1))
 
 
 def test_that_a_judgement_has_its_figures(job_steps: tuple[list[Step], ModelEvaluationResult]) -> None:
@@ -64,10 +61,5 @@ def test_that_drawing_can_be_stopped_between_chunks_and_says_how_far_it_is() -> 
     reported = [next(steps) for _ in range(3)]
     assert reported == [Started("Drawing", 1203), Progress(500, 1203), Progress(1000, 1203)]
     steps.close()
-    again, done = draw(model, GenerationRequest(n=1203, seed=2)), False
-    while not done:
-        try:
-            next(again)
-        except StopIteration as end:
-            draws, done = end.value, True
+    draws = result_of(draw(model, GenerationRequest(n=1203, seed=2)))
     assert draws.coefficients.tobytes() == model.draw(1203, 2).coefficients.tobytes()

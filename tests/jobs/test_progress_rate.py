@@ -8,6 +8,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import particle_jobs
 from regolith_studio.jobs.events import Progress, ProgressRate, format_duration
+from tests.steps import played
 
 
 def test_that_the_pace_is_items_by_seconds_and_forgets_what_was_done_before() -> None:
@@ -34,15 +35,11 @@ def test_that_the_parts_of_a_large_mesh_are_named_while_it_is_measured(
 ) -> None:
     monkeypatch.setattr(particle_jobs, "LARGE", 300)
     particles = (Particle("small", icosphere(1)), Particle("large", icosphere(2)))
-    steps = particle_jobs.measure_sample(particles)
+    steps, measured = played(particle_jobs.measure_sample(particles))
     story = []
-    try:
-        while True:
-            step = next(steps)
-            if isinstance(step, Progress) and (step.done, step.message) not in [(0, ""), *story[-1:]]:
-                story.append((step.done, step.message))
-    except StopIteration as end:
-        measured = end.value
+    for step in steps:
+        if isinstance(step, Progress) and (step.done, step.message) not in [(0, ""), *story[-1:]]:
+            story.append((step.done, step.message))
     parts = 2 + len(DEFAULT_KEYS)
     assert story[0] == (1, "small")
     assert story[-1] == (2, "large")

@@ -24,6 +24,7 @@ from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import write_model
 from regolith_studio.steps import result_of
+from tests.files import contents
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12, "target": "particle"}
 GREY = str(resource("samples", "ct", "synthetic-grey.tif"))
@@ -31,11 +32,6 @@ GREY = str(resource("samples", "ct", "synthetic-grey.tif"))
 
 def run(folder: Path, resume: bool = False, workers: int = 1, **entries: Any) -> Any:
     return result_of(run_recipe(recipe_of(**{**BASE, **entries}), folder.parent, folder, workers, resume))
-
-
-def results(folder: Path) -> dict[str, bytes]:
-    files = {path.relative_to(folder): path for path in folder.rglob("*") if path.is_file()}
-    return {name.as_posix(): path.read_bytes() for name, path in files.items() if name.parts[0] != "journal"}
 
 
 def described(folder: Path) -> list[dict[str, Any]]:
@@ -144,10 +140,10 @@ def test_that_a_run_given_up_while_grains_are_extracted_or_worked_on_ends_with_t
                 break
         steps.close()
         run(folder, resume=True, **entries)
-        assert results(folder) == results(tmp_path / "whole")
+        assert contents(folder) == contents(tmp_path / "whole")
         assert run(folder, resume=True, **entries).problems == []
         assert not list(folder.rglob("*.npz"))
-        assert results(folder) == results(tmp_path / "whole")
+        assert contents(folder) == contents(tmp_path / "whole")
     again = run(tmp_path / "whole", **entries)
     assert again.tally.n_read > 0
 

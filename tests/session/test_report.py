@@ -1,7 +1,6 @@
 """The report on a sample: what stands in it, what fails in its place, and that it can be repeated."""
 
 import base64
-import hashlib
 import json
 import re
 import shutil
@@ -51,6 +50,7 @@ from regolith_studio.session.report.write import (
 from regolith_studio.settings import settings_of_kind
 from regolith_studio.steps import result_of
 from regolith_studio.studies.figures import write_figure
+from tests.files import contents
 
 NUMBERS = Table("Numbers", (Column("name"), Column("length", "um")), (("one", 1.5), ("<two>", None)))
 
@@ -90,11 +90,6 @@ class Tags(HTMLParser):
         if self._in_heading:
             self.headings.append(data)
             self._in_heading = False
-
-
-def hashes(folder: Path) -> dict[str, str]:
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
 
 
 def n_pages(pdf: bytes) -> int:
@@ -174,7 +169,7 @@ def test_that_the_same_sample_and_settings_give_the_same_bytes(
 ) -> None:
     (tmp_path / "again").mkdir()
     again = result_of(write_report(particles, tmp_path / "again" / "report"))
-    assert hashes(again.folder) == hashes(small.folder)
+    assert contents(again.folder) == contents(small.folder)
 
 
 def test_that_a_table_of_errors_has_a_row_a_group_and_a_column_a_descriptor() -> None:
@@ -346,4 +341,4 @@ def test_that_a_real_report_has_every_figure_or_says_why_not(
     assert n_pages((first.folder / PDF).read_bytes()) >= 3
     (tmp_path / "other").mkdir()
     second = result_of(write_report(particles, tmp_path / "other" / "one", settings))
-    assert hashes(second.folder) == hashes(first.folder)
+    assert contents(second.folder) == contents(first.folder)

@@ -2,7 +2,6 @@
 
 import contextlib
 import csv
-import hashlib
 import json
 import multiprocessing
 import os
@@ -27,7 +26,9 @@ from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import RecipeRun, run_recipe
+from regolith_studio.steps import result_of
 from regolith_studio.studies import lmax
+from tests.files import contents
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,30 +53,14 @@ def recipe(grains: Path, **entries: Any) -> Recipe:
 
 
 def done(*arguments: Any, **options: Any) -> RecipeRun:
-    steps = run_recipe(*arguments, **options)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
-
-
-def digests(folder: Path) -> dict[str, str]:
-    """SHA-256 of every file but the journal's."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    names = {path: path.relative_to(folder) for path in files}
-    return {
-        name.as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path, name in names.items()
-        if name.parts[0] != "journal"
-    }
+    return result_of(run_recipe(*arguments, **options))
 
 
 @pytest.fixture(scope="module")
-def alone(grains: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[RecipeRun, dict[str, str]]:
+def alone(grains: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[RecipeRun, dict[str, bytes]]:
     """The recipe by one worker, each particle a chunk."""
     found = done(recipe(grains), grains, tmp_path_factory.mktemp("one") / "out")
-    return found, digests(found.folder)
+    return found, contents(found.folder)
 
 
 def test_that_failed_particles_are_listed_and_the_rest_goes_on(alone: tuple[RecipeRun, dict]) -> None:
@@ -96,7 +81,7 @@ def test_that_workers_and_chunks_change_no_byte(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict], workers: int, chunk: int
 ) -> None:
     found = done(recipe(grains), grains, tmp_path / "out", workers, chunk=chunk)
-    assert digests(found.folder) == alone[1]
+    assert contents(found.folder) == alone[1]
 
 
 @pytest.mark.parametrize(
@@ -120,7 +105,7 @@ def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
     assert first.done == min(after, 10)
     for _ in again:
         pass
-    assert digests(tmp_path / "out") == alone[1]
+    assert contents(tmp_path / "out") == alone[1]
 
 
 @pytest.mark.slow
@@ -136,7 +121,7 @@ def test_that_a_run_given_up_while_it_writes_leaves_the_earlier_results(
             break
     steps.close()
     assert writing
-    assert digests(tmp_path / "out") == alone[1]
+    assert contents(tmp_path / "out") == alone[1]
     assert not [*tmp_path.glob(".*")]
 
 
@@ -162,7 +147,7 @@ def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
     monkeypatch.setattr(lmax, "errors_or_reason", counted)
     done(given_recipe, grains, tmp_path / "out", resume=True)
     assert len(given) == 1
-    assert digests(tmp_path / "out") == digests(done(given_recipe, grains, tmp_path / "whole").folder)
+    assert contents(tmp_path / "out") == contents(done(given_recipe, grains, tmp_path / "whole").folder)
 
 
 def n_records(checkpoint: Path) -> int:
@@ -248,9 +233,9 @@ def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Pat
         **{**given_recipe.model_dump(), "population": {"sources": ["ma165"], "n": 6, "l_max": 6}}
     )
     more = done(longer, tmp_path, tmp_path / "more")
-    same = {name: digest for name, digest in digests(found.folder).items() if name.startswith("meshes/ma")}
+    same = {name: digest for name, digest in contents(found.folder).items() if name.startswith("meshes/ma")}
     assert len(same) == 4
-    assert same.items() <= digests(more.folder).items()
+    assert same.items() <= contents(more.folder).items()
 
 
 def test_that_a_recipe_divides_radii_by_the_reference_that_it_names(tmp_path: Path, grains: Path) -> None:
@@ -283,7 +268,7 @@ def test_that_a_worker_killed_in_mid_run_changes_no_byte(
             os.kill(multiprocessing.active_children()[0].pid or 0, signal.SIGKILL)
             killed_one = True
     assert killed_one
-    assert digests(tmp_path / "out") == alone[1]
+    assert contents(tmp_path / "out") == alone[1]
 
 
 def test_that_a_dataset_too_large_to_be_read_again_is_refused_before_the_work(tmp_path: Path) -> None:

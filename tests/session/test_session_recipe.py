@@ -32,17 +32,13 @@ from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.steps import result_of
+from tests.files import contents
 
 CHOICES = Choices(
     method="annealing", target="fit", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3
 )
 ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)
 LEVEL = 2
-
-
-def files(folder: Path) -> dict[str, bytes]:
-    found = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
-    return {name: path.read_bytes() for name, path in found.items()}
 
 
 @pytest.mark.slow
@@ -76,7 +72,7 @@ def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> Ses
     write_files({**models, saved: recipe.to_json().encode()})
     done = result_of(run_recipe(read_recipe(saved), saved.parent, place / "run" / "grains"))
     assert not done.problems
-    assert files(place / "run" / "grains" / "dataset") == files(place / "window" / "grains")
+    assert contents(place / "run" / "grains" / "dataset") == contents(place / "window" / "grains")
     return session_recipe
 
 

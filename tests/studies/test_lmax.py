@@ -30,18 +30,9 @@ from regolith_studio.studies.lmax import (
     particle_table,
     rmsre_table,
 )
+from tests.steps import played
 
 DEGREES = (1, 4, 8)
-
-
-def finished(steps):
-    """Run a study to its end: its progress events and its result."""
-    events = []
-    while True:
-        try:
-            events.append(next(steps))
-        except StopIteration as stop:
-            return events, stop.value
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +48,7 @@ def particles():
 
 @pytest.fixture(scope="module")
 def study(particles):
-    return finished(lmax_study(particles, DEGREES))[1]
+    return played(lmax_study(particles, DEGREES))[1]
 
 
 @pytest.fixture
@@ -123,7 +114,7 @@ def test_that_a_resample_counts_particles_as_often_as_its_weights_say():
 
 
 def test_that_each_particle_is_told_of_with_the_study_so_far(particles):
-    events, result = finished(lmax_study(particles, (1, 2)))
+    events, result = played(lmax_study(particles, (1, 2)))
     assert [(e.done, e.total, e.message) for e in events] == [(i + 1, 3, f"grain {i}") for i in range(3)]
     assert [len(e.partial.names) for e in events] == [1, 2, 3]
     np.testing.assert_array_equal(events[-1].partial.errors, result.errors)
@@ -132,24 +123,24 @@ def test_that_each_particle_is_told_of_with_the_study_so_far(particles):
 def test_that_a_broken_particle_is_listed_and_stops_nothing(particles):
     mesh = particles[0].mesh
     broken = Particle("broken", Mesh(mesh.vertices, mesh.faces[1:]), "long")
-    _, result = finished(lmax_study([broken, *particles], (1,)))
+    _, result = played(lmax_study([broken, *particles], (1,)))
     assert result.names == ("grain 0", "grain 1", "grain 2")
     assert result.failures[0][0] == "broken"
     assert "open" in result.failures[0][1]
     with pytest.raises(InputError, match=r"None of the 1 particles can be fitted: "):
-        finished(lmax_study([broken], (1,)))
+        played(lmax_study([broken], (1,)))
 
 
 def test_that_a_study_of_nothing_is_refused(particles):
     for arguments in (([], (1,)), (particles, ())):
         with pytest.raises(InputError, match=r"at least one particle and one degree"):
-            finished(lmax_study(*arguments))
+            played(lmax_study(*arguments))
 
 
 @pytest.mark.slow
 def test_that_a_process_pool_gives_the_same_numbers(particles):
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
-        _, result = finished(lmax_study(particles, (1, 4), mapper=pool.map))
+        _, result = played(lmax_study(particles, (1, 4), mapper=pool.map))
     wanted = [lmax_errors(particle.mesh, (1, 4)) for particle in particles]
     np.testing.assert_array_equal(result.errors, wanted)
 
@@ -222,7 +213,7 @@ def test_that_fig_3_of_real_grains_has_the_published_shape(real_data):
     for path in sorted(real_data("cement140/smooth").glob("*.stl"))[:20]:
         loaded = trimesh.load(path)
         sample.append(Particle(path.stem, Mesh(loaded.vertices, loaded.faces), "cement"))
-    _, result = finished(lmax_study(sample, (2, 5, 10, 15)))
+    _, result = played(lmax_study(sample, (2, 5, 10, 15)))
     at = {key: result.rmsre()[2, k] for k, key in enumerate(result.keys)}
     assert at["volume"] < 0.005
     assert 0.02 < at["sphericity"] < 0.07

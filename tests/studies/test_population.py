@@ -36,6 +36,7 @@ from regolith_studio.studies.population_tables import (
     ranking_table,
     target_table,
 )
+from tests.steps import played
 
 SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
 SMALL = {"l_max": 4, "n_draws": 24, "n_splits": 2, "n_repeats": 2, "level": 2}
@@ -50,12 +51,7 @@ def rough_sample(n: int, l_max: int = 4) -> Sample:
 
 
 def run(*arguments: object, **options: object) -> tuple[list[StudyProgress], PopulationStudy]:
-    steps, study = [], population_study(*arguments, **options)  # type: ignore[arg-type]
-    while True:
-        try:
-            steps.append(next(study))
-        except StopIteration as end:
-            return steps, end.value
+    return played(population_study(*arguments, **options))  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

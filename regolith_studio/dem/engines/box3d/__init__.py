@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
@@ -43,10 +42,7 @@ class Box3dEngine(SteppedEngine):
 
     def find(self) -> Availability:
         """Whether the package is installed."""
-        try:
-            return Availability(version("robox3d"))
-        except PackageNotFoundError:
-            return Availability(problem=N_("Box3D is not installed; install the package robox3d."))
+        return Availability.of(N_("Box3D is not installed; install the package robox3d."), "robox3d")
 
     def check(self, prepared: PreparedCase) -> None:
         """Check shapes and frictions."""

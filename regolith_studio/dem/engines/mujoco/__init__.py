@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
@@ -44,12 +43,9 @@ class MujocoEngine(SteppedEngine):
 
     def find(self) -> Availability:
         """Whether the package is installed."""
-        for package in ("mujoco-core", "mujoco"):
-            try:
-                return Availability(version(package))
-            except PackageNotFoundError:
-                continue
-        return Availability(problem=N_("MuJoCo is not installed; install the package mujoco-core."))
+        return Availability.of(
+            N_("MuJoCo is not installed; install the package mujoco-core."), "mujoco-core", "mujoco"
+        )
 
     def solver(self, prepared: PreparedCase, settings: MujocoSettings) -> Solver:
         """MuJoCo with the particles of a case."""

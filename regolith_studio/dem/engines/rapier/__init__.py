@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
@@ -42,10 +41,7 @@ class RapierEngine(SteppedEngine):
 
     def find(self) -> Availability:
         """Whether the package is installed."""
-        try:
-            return Availability(version("rapier3d"))
-        except PackageNotFoundError:
-            return Availability(problem=N_("Rapier is not installed; install the package rapier3d."))
+        return Availability.of(N_("Rapier is not installed; install the package rapier3d."), "rapier3d")
 
     def solver(self, prepared: PreparedCase, settings: SubstepSettings) -> Solver:
         """Rapier with the particles of a case."""

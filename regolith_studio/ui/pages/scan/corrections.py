@@ -31,8 +31,7 @@ from regolith_studio.jobs.classifier_jobs import (
     describe_grains,
     predict_slices,
     read_strokes,
-    save_classifier,
-    save_objects,
+    save_training,
     train_on_strokes,
 )
 from regolith_studio.jobs.events import Failed, Job
@@ -112,7 +111,7 @@ class Painting(QObject):
     def save(self, path: Path, scan: Path, done: Callable[[Path], None]) -> None:
         """Write the classifier, and call `done` with its path."""
         if self.training is not None:
-            job = Job(save_classifier, (path, self.training, scan))
+            job = Job(save_training, (path, self.training, scan))
             self._context.start(tr("Saving the classifier"), job, done, queue="classifier")
 
     def stop(self) -> None:
@@ -311,7 +310,7 @@ class Corrections(QObject):
         """Write the object classifier, and call `done` with its path."""
         training = self._training()
         if training is not None:
-            job = Job(save_objects, (path, training, scan))
+            job = Job(save_training, (path, training, scan))
             self._context.start(tr("Saving the classifier"), job, done, queue="classifier")
 
     # --- steps ---------------------------------------------------------------------------------
