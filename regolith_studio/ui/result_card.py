@@ -142,6 +142,7 @@ class ResultView(QFrame):
         self.button = named(QPushButton(start, self), f"{name}_button")
         self.button.clicked.connect(self._act)
         self._ends: list[QWidget] = []
+        self._widest: dict[int, str] = {}
         self._place(lines)
         self._enlarge()
         self.button.setVisible(bool(start))
@@ -206,7 +207,7 @@ class ResultView(QFrame):
         start = self._texts[0 if state in (ResultState.NONE, ResultState.FAILED) else 1]
         running = state is ResultState.RUNNING
         stops = tr("Stop"), tr("Stopping …")
-        widest = 0  # of its texts, so that it is in its place for the next click
+        widest = self.button.minimumWidth()  # of all its texts, so that it is in its place for the next click
         for text in (*self._texts, *stops, stops[self._stopping] if running else start):
             self.button.setText(text)
             widest = max(widest, self.button.sizeHint().width())
@@ -228,6 +229,11 @@ class ResultView(QFrame):
         self.captions[place].setText(text)
         for part in (self.captions[place], self.figures[place]):
             part.setToolTip(tip)
+
+    def reserve(self, place: int, text: str) -> None:
+        """Keep room for a figure of so much text, where the first value would widen the column of the card."""
+        self._widest[place] = text
+        self._enlarge()
 
     def _act(self) -> None:
         running = self._record.state is ResultState.RUNNING
@@ -271,6 +277,8 @@ class ResultView(QFrame):
         super().changeEvent(event)
         if event.type() == QEvent.Type.FontChange:
             self._enlarge()
+            self.button.setMinimumWidth(0)
+            self._name_button()
 
     def _enlarge(self) -> None:
         for place, figure in enumerate(self.figures):
@@ -278,6 +286,8 @@ class ResultView(QFrame):
             font.setPointSizeF((MAGNIFICATION if place else self._lead) * font.pointSizeF())
             font.setBold(True)
             figure.setFont(font)
+            widest = self._widest.get(place, "")
+            figure.setMinimumWidth(figure.fontMetrics().horizontalAdvance(widest))
 
 
 class RunController:

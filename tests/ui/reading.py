@@ -27,7 +27,7 @@ SAME_EVERYWHERE = re.compile(
         (
             r"Regolith Studio|Jaccard|English|Deutsch|KiB|CSF|lmax|Dmin|Dmax|Dint|Fmax|Fmin|RMSRE|Zingg",
             r"PySide6-Essentials|pyqtgraph|pyvista|numba|numpy|vtk",
-            r"(agglutinate|angular|bead|flat|elongated|subangular)-\d|req",
+            r"sample:ct/[a-z-]+|(agglutinate|angular|bead|flat|elongated|subangular)-\d|req",
             r"Ctrl|Shift|Alt|PgUp|PgDown|Return|Space|auto",
             r"MuJoCo|LAMMPS|YADE|Aspherix|ANSYS Rocky|Chrono|DEM-Engine|glTF|Blender",
             r"GSD|HOOMD-blue|Rockable|exaDEM",

@@ -246,12 +246,12 @@ def test_that_a_hundred_virtual_particles_are_compared_with_the_sample(newcomer)
     newcomer.click(QWidget, "page_model")
     newcomer.click(QPushButton, "model_fit")
     newcomer.rest()
-    newcomer.click(QPushButton, "model_draw")
+    newcomer.click(QPushButton, "model_drawn_button")
     newcomer.rest()
     newcomer.tab("model_tabs", "Distributions")
     newcomer.choose("model_distribution_of", "Aspect ratio")
     page = newcomer.window.page
-    assert page.drawing.findings.text().startswith("100 particles")
+    assert page.drawing.card.record.values[0] == "100"
     measured, drawn = page.distributions.plot.curves
     assert (measured.label, drawn.label) == ("12 measured", "100 drawn")
     fitted = sorted(entry.descriptors["aspect_ratio"] for entry in newcomer.window.session.particles)
@@ -321,7 +321,7 @@ def test_that_ten_shapes_are_exported_for_two_programs(newcomer, tmp_path):
 @pytest.mark.slow
 def test_that_drawn_particles_are_exported_for_two_programs(newcomer, tmp_path):
     newcomer.click(QWidget, "page_model")
-    newcomer.click(QPushButton, "model_draw")
+    newcomer.click(QPushButton, "model_drawn_button")
     newcomer.rest()
     newcomer.click(QPushButton, "model_adopt")
     newcomer.rest()
