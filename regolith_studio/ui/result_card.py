@@ -231,7 +231,7 @@ class ResultView(QFrame):
             part.setToolTip(tip)
 
     def reserve(self, place: int, text: str) -> None:
-        """Keep room for a figure of so much text, where the first value would widen the column of the card."""
+        """Keep room for a figure of so much text, whose first value would widen the column of the card."""
         self._widest[place] = text
         self._enlarge()
 

@@ -208,7 +208,7 @@ class DrawControls(QWidget):
         captions = tr("Particles"), tr("r_eq [µm]")
         self.card = ResultView("model_drawn", captions, tr("Draw"), tr("Draw again"))
         self.card.caption(1, rich_symbol(captions[1]), tr("Smallest and largest equivalent radius"))
-<<<<<<< Updated upstream
+        self.card.reserve(1, "0.00 – 00.0")
         self.draw = self.card.button
         self.adopt = named(
             QPushButton(tr("Use as population")),
@@ -222,11 +222,6 @@ class DrawControls(QWidget):
             tr("Names of the components, the most numerous first"),
             tr("Names of the components, separated by commas, the most numerous first."),
         )
-=======
-        self.card.reserve(1, "0.00 – 00.0")
-        self.draw, self.adopt = self.card.button, QPushButton(tr("Use as population"))
-        self.names = QLineEdit()
->>>>>>> Stashed changes
         self._names_label = QLabel(tr("Components"))
         self.number.setGroupSeparatorShown(True)
         for field in (self.smallest, self.largest):
