@@ -106,7 +106,7 @@ class DrumRotation:
     Raises InputError if a value is out of its range.
     """
 
-    rpm: float = _number(10.0, N_("Speed of rotation"), "rpm", 1e-3, 1e5)
+    rpm: float = _number(10.0, N_("Speed of rotation"), N_("rpm"), 1e-3, 1e5)
     turns: float = _number(1.0, N_("Turns"), "", 0.05, 1000.0)
     moments: int = _number(300, N_("Measured moments"), "", 20, 100_000)
 

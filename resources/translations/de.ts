@@ -992,6 +992,10 @@
         <translation>Änderungen der Fehler in Prozentpunkten</translation>
     </message>
     <message>
+        <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d</source>
+        <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d</translation>
+    </message>
+    <message>
         <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d, of the plate {plate:.1f} %</source>
         <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d, mit der Platte {plate:.1f} %</translation>
     </message>
@@ -8210,6 +8214,10 @@
     <message>
         <source>rosin_rammler</source>
         <translation>Rosin-Rammler</translation>
+    </message>
+    <message>
+        <source>rpm</source>
+        <translation>U/min</translation>
     </message>
     <message>
         <source>run</source>

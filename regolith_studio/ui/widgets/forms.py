@@ -193,7 +193,7 @@ def _decimal_field(metadata: Mapping[str, Any]) -> DecimalField:
     field.setRange(
         max(10.0**-decimals, low) if low > 0.0 else low, float(metadata.get("maximum", 1e6)) * factor
     )
-    field.setSuffix(f" {metadata['unit']}" if metadata.get("unit") else "")
+    field.setSuffix(f" {tr(metadata['unit'])}" if metadata.get("unit") else "")
     if "step" in metadata:
         field.setSingleStep(float(metadata["step"]) * factor)
     else:

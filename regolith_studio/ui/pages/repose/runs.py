@@ -168,12 +168,18 @@ def checks_text(run: RunSummary) -> str:
     if checks["problems"]:
         return " ".join(translate(run.message(each)) for each in checks["problems"])
     overlap = 100 * checks["max_overlap"]
-    checked = tr(
-        "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d, of the plate {plate:.1f} %",
-        count=checks["particles_out"],
-        overlap=overlap,
-        plate=100 * checks["plate_depth"],
-    )
+    count = checks["particles_out"]
+    if run.document.get("case", {}).get("drum"):  # has no plate
+        checked = tr(
+            "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d", count=count, overlap=overlap
+        )
+    else:
+        checked = tr(
+            "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d, of the plate {plate:.1f} %",
+            count=count,
+            overlap=overlap,
+            plate=100 * checks["plate_depth"],
+        )
     heap = (run.document.get("packing") or {}).get("heap")
     if heap is None:
         return checked
