@@ -101,12 +101,9 @@ class StudyExecutor:
         self, draws: Realizations, l_max: int, message: str
     ) -> Generator[StudyProgress, None, FloatArray]:
         """Every particle in the frame of its axes, shape (n, (l_max + 1)^2)."""
-        rows = [np.empty((0, (l_max + 1) ** 2))]
-        for part in self.mapper(partial(frames_of, l_max=l_max), _batches(draws, FRAME_BATCH)):
-            if part is not None:
-                rows.append(part)
-            yield self.progress(message)
-        return np.concatenate(rows)
+        batches = _batches(draws, FRAME_BATCH)
+        rows = yield from self.gathered(partial(frames_of, l_max=l_max), batches, message)
+        return np.concatenate([np.empty((0, (l_max + 1) ** 2)), *rows])
 
     def gathered(
         self, work: Callable[[Any], Any], parts: Iterable[Any], message: str
@@ -118,18 +115,6 @@ class StudyExecutor:
                 results.append(result)
             yield self.progress(message)
         return results
-
-    def drawn(
-        self, task: FitTask, message: str
-    ) -> Generator[StudyProgress, None, tuple[tuple[Realizations, ...], tuple[float, ...]]]:
-        """As :func:`fit_and_draw`, by one process."""
-        sampled: tuple[tuple[Realizations, ...], tuple[float, ...]] = (), ()
-        yield self.progress(message)
-        for answer in self.mapper(fit_and_draw, (task,)):
-            if answer is not None:
-                sampled = answer
-            yield self.progress(message)
-        return sampled
 
 
 def descriptors_of(draws: Realizations, keys: tuple[str, ...], level: int = MESH_LEVEL) -> FloatArray:
@@ -389,9 +374,9 @@ class _TrainTestSplit:
         seeds = tuple(seed + split * n_repeats + repeat for repeat in range(n_repeats))
         label = {"name": Message(MODELS[key].label), "split": split + 1}
         task = FitTask(key, options, self.sample.chosen(train), n_draws, seeds)
-        drawn, criterion = yield from self.work.drawn(
-            task, Message(N_("{name}, split {split}, fit"), **label)
-        )
+        message = Message(N_("{name}, split {split}, fit"), **label)
+        yield self.work.progress(message)
+        ((drawn, criterion),) = yield from self.work.gathered(fit_and_draw, (task,), message)
         results = []
         for repeat, draws in enumerate(drawn):
             message = Message(N_("{name}, split {split}, draw {draw}"), draw=repeat + 1, **label)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, PowerNorm, TwoSlopeNorm
 from matplotlib.figure import Figure
 
@@ -78,25 +79,23 @@ def sensitivity_figure(study: CoarseningStudy) -> Figure:
     span = max(MIN_SPAN, float(np.abs(values).max(initial=0.0)))
     norm = TwoSlopeNorm(0.0, -span, span)
     image = axis.imshow(values, aspect="auto", cmap="RdBu_r", norm=norm)
-    for r in range(n_rows):
-        for k in range(len(COLUMNS)):
-            text = format_difference(values[r, k])
-            axis.text(
-                k,
-                r,
-                text if sure[r, k] or text == "0" else f"({text})",
-                ha="center",
-                va="center",
-                color="white" if abs(values[r, k]) > 0.6 * span else "black",
-                fontsize=8,
-            )
-    axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
-    axis.set_yticks(range(n_rows), [row.label for row in study.rows[1:]])
-    axis.xaxis.tick_top()
+    for (r, k), value in np.ndenumerate(values):
+        text = format_difference(value)
+        text = text if sure[r, k] or text == "0" else f"({text})"
+        colour = "white" if abs(value) > 0.6 * span else "black"
+        axis.text(k, r, text, ha="center", va="center", color=colour, fontsize=8)
+    _label_cells(axis, [row.label for row in study.rows[1:]])
     figure.colorbar(image, ax=axis).set_label(
         "change of RMSRE (percentage points); in brackets: may be chance"
     )
     return figure
+
+
+def _label_cells(axis: Axes, rows: list[str]) -> None:
+    """Name the rows and, above, the descriptors."""
+    axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
+    axis.set_yticks(range(len(rows)), rows)
+    axis.xaxis.tick_top()
 
 
 ERRORS = LinearSegmentedColormap.from_list("errors", ["#ffffff", "#ecb73f"])
@@ -112,12 +111,9 @@ def coarsening_figure(study: CoarseningStudy) -> Figure:
     axis = figure.subplots()
     norm = PowerNorm(0.5, 0.0, max(float(np.nanmax(values, initial=0.0)), MIN_PLOTTED))
     image = axis.imshow(values, aspect="auto", cmap=ERRORS, norm=norm)
-    for r in range(n_rows):
-        for k in range(len(COLUMNS)):
-            axis.text(k, r, _printed(values[r, k]), ha="center", va="center")
-    axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
-    axis.set_yticks(range(n_rows), [_described(study, r) for r in range(n_rows)])
-    axis.xaxis.tick_top()
+    for (r, k), value in np.ndenumerate(values):
+        axis.text(k, r, _printed(value), ha="center", va="center")
+    _label_cells(axis, [_described(study, r) for r in range(n_rows)])
     figure.colorbar(image, ax=axis).set_label("RMSRE (%); J: mean Jaccard distance (%)")
     return figure
 
@@ -139,20 +135,10 @@ def facet_count_figure(study: CoarseningStudy) -> Figure:
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")
     axis = figure.subplots()
     for k, key in enumerate(COLUMNS):
-        axis.fill_between(
-            counts,
-            np.maximum(low[:, k], MIN_PLOTTED),
-            np.maximum(high[:, k], MIN_PLOTTED),
-            alpha=0.15,
-            linewidth=0,
-        )
-        axis.plot(
-            counts,
-            np.maximum(values[:, k], MIN_PLOTTED),
-            marker="o",
-            markersize=3.5,
-            label=column_symbol(key),
-        )
+        ends = np.maximum(low[:, k], MIN_PLOTTED), np.maximum(high[:, k], MIN_PLOTTED)
+        axis.fill_between(counts, *ends, alpha=0.15, linewidth=0)
+        shown = np.maximum(values[:, k], MIN_PLOTTED)
+        axis.plot(counts, shown, marker="o", markersize=3.5, label=column_symbol(key))
     axis.set_yscale("log")
     axis.set_xlabel("facets")
     axis.set_ylabel(f"RMSRE (%), at least {MIN_PLOTTED:g}; J: mean (%)")

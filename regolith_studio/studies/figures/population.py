@@ -17,84 +17,75 @@ from regolith_studio.studies.figures import as_written, write_figure
 from regolith_studio.studies.matching import QUANTILES as MATCHED_QUANTILES
 from regolith_studio.studies.matching import Match
 from regolith_studio.studies.population import PopulationStudy
-from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
+from regolith_studio.studies.population_distances import WEIGHTINGS
 from regolith_studio.studies.population_tables import (
-    QUANTILES,
+    CUT,
+    MEASURED,
+    PopulationCurve,
     common_grid,
+    components_panels,
+    density_panels,
     distance_table,
-    histogram_edges,
     pair_density,
     pair_table,
+    quantile_panels,
     ranking_table,
-    size_column,
     target_table,
 )
 
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")
 """Okabe and Ito's palette; the measured sample is black and grey."""
-MEASURED = "#bbbbbb"
+SAMPLE = "#bbbbbb"
 GREYS = ("#e4e4e4", "#c8c8c8", "#a8a8a8", "#888888")
 N_COLUMNS = 3
 
 
 def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
-    """Fig. 4 (by number) or Fig. 5 (by volume): histograms with bins shared by all, outer 0.2 % cut off."""
+    """Fig. 4 (by number) or Fig. 5 (by volume)."""
     figure, axes = _panels(len(study.keys))
-    for axis, column in zip(axes, range(len(study.keys)), strict=False):
-        tables = [study.measured, study.cut, *(model.table for model in study.models)]
-        bins = histogram_edges(tables, column).tolist()
-        weights = [class_weights(table, weighting, size_column(study)) for table in tables]
-        measured = study.measured[:, column]
-        axis.hist(measured, bins, weights=weights[0], density=True, color=MEASURED, label="measured")
-        if study.cut_degree < study.l_max:
-            axis.hist(
-                study.cut[:, column],
-                bins,
-                weights=weights[1],
-                density=True,
-                histtype="step",
-                color="black",
-                linestyle=":",
-                label=cut_label(study),
-            )
-        for table, weight, model, colour in zip(
-            tables[2:], weights[2:], study.models, cycle(COLOURS), strict=False
-        ):
-            axis.hist(
-                table[:, column],
-                bins,
-                weights=weight,
-                density=True,
-                histtype="step",
-                color=colour,
-                label=MODELS[model.key].label,
-            )
-        axis.set_xlabel(_label(study, column))
-    for axis in axes[::N_COLUMNS]:
-        axis.set_ylabel(f"density by {weighting}")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
+    for axis, panel in zip(axes, density_panels(study, weighting), strict=True):
+        for curve in panel.curves:
+            if curve.source == MEASURED:
+                axis.fill_between(curve.x, curve.y, color=SAMPLE, label="measured")
+            else:
+                colour, label = _style(study, curve)
+                axis.plot(curve.x, curve.y, ":" if curve.source == CUT else "-", color=colour, label=label)
+        axis.set_ylim(bottom=0.0)
+        axis.set_xlabel(_label(study, panel.x))
+    _complete(figure, axes, f"density by {weighting}")
     return figure
 
 
 def quantile_figure(study: PopulationStudy) -> Figure:
     """Quantiles (0.5 to 99.5 %) of each model against those of the sample: equal ones lie on the line."""
     figure, axes = _panels(len(study.keys))
-    for column, axis in enumerate(axes):
-        measured = np.percentile(study.measured[:, column], QUANTILES)
-        axis.plot(measured[[0, -1]], measured[[0, -1]], color="black", linewidth=0.8)
-        if study.cut_degree < study.l_max:
-            cut = np.percentile(study.cut[:, column], QUANTILES)
-            axis.plot(measured, cut, ":", color="black", label=cut_label(study))
-        for model, colour in zip(study.models, cycle(COLOURS), strict=False):
-            quantiles = np.percentile(model.table[:, column], QUANTILES)
-            axis.plot(measured, quantiles, ".", color=colour, markersize=3, label=MODELS[model.key].label)
-        axis.set_xlabel(f"measured {_label(study, column)}")
+    for axis, panel in zip(axes, quantile_panels(study), strict=True):
+        for curve in panel.curves:
+            if curve.source == MEASURED:
+                axis.plot(curve.x, curve.y, color="black", linewidth=0.8)
+            else:
+                colour, label = _style(study, curve)
+                line = ":" if curve.source == CUT else "."
+                axis.plot(curve.x, curve.y, line, color=colour, markersize=3, label=label)
+        axis.set_xlabel(f"measured {_label(study, panel.x)}")
+    _complete(figure, axes, "drawn")
+    return figure
+
+
+def _style(study: PopulationStudy, curve: PopulationCurve) -> tuple[str, str]:
+    """Colour and label of the particles cut at another degree, or of a model."""
+    if curve.source == CUT:
+        return "black", f"measured, cut at l = {study.cut_degree}"
+    number = [model.key for model in study.models].index(curve.source)
+    return COLOURS[number % len(COLOURS)], MODELS[curve.source].label
+
+
+def _complete(figure: Figure, axes: list[Axes], y: str) -> None:
+    """Label the vertical axes and explain the curves."""
     for axis in axes[::N_COLUMNS]:
-        axis.set_ylabel("drawn")
+        axis.set_ylabel(y)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
-    return figure
 
 
 def pair_figure(study: PopulationStudy) -> Figure:
@@ -117,9 +108,9 @@ def pair_figure(study: PopulationStudy) -> Figure:
             axis.contourf(x, y, values, levels=ends, colors=GREYS[: len(levels)])
             values, levels = pair_density(drawn, x, y)
             axis.contour(x, y, values, levels=levels, colors=COLOURS[row % len(COLOURS)], linewidths=1)
-            axis.set_xlabel(_label(study, pair[0]))
-            axis.set_ylabel(_label(study, pair[1]))
-    handles = [Line2D([], [], color=MEASURED, linewidth=6, label="measured")]
+            axis.set_xlabel(_label(study, study.keys[pair[0]]))
+            axis.set_ylabel(_label(study, study.keys[pair[1]]))
+    handles = [Line2D([], [], color=SAMPLE, linewidth=6, label="measured")]
     handles += [
         Line2D([], [], color=colour, label=MODELS[model.key].label)
         for model, colour in zip(study.models, cycle(COLOURS), strict=False)
@@ -130,15 +121,15 @@ def pair_figure(study: PopulationStudy) -> Figure:
 
 def components_figure(study: PopulationStudy) -> Figure | None:
     """Bayes' criterion above its lowest value against the number of parts; none without a mixture."""
-    curves = [(model, np.array(model.criterion)) for model in study.models if len(model.criterion) > 1]
-    if not curves:
+    panels = components_panels(study)
+    if not panels:
         return None
     figure = Figure(figsize=(5, 3.4), layout="constrained")
     axis = figure.subplots()
-    for (model, curve), colour in zip(curves, cycle(COLOURS), strict=False):
-        numbers, best = np.arange(1, len(curve) + 1), int(curve.argmin())
-        axis.plot(numbers, curve - curve.min(), "o-", color=colour, label=MODELS[model.key].label)
-        axis.plot(numbers[best], 0.0, "o", color=colour, markersize=10, fillstyle="none")
+    for curve in panels[0].curves:
+        colour, label = _style(study, curve)
+        axis.plot(curve.x, curve.y, "o-", color=colour, label=label)
+        axis.plot(curve.x[curve.y.argmin()], 0.0, "o", color=colour, markersize=10, fillstyle="none")
     axis.set_xlabel("number of parts")
     axis.set_ylabel("BIC above its minimum")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -165,11 +156,6 @@ def write_population_study(
     return tuple(files)
 
 
-def cut_label(study: PopulationStudy) -> str:
-    """Name of the second measured line."""
-    return f"measured, cut at l = {study.cut_degree}"
-
-
 def _panels(n: int) -> tuple[Figure, list[Axes]]:
     columns = min(N_COLUMNS, n)
     rows = ceil(n / columns)
@@ -180,8 +166,8 @@ def _panels(n: int) -> tuple[Figure, list[Axes]]:
     return figure, axes[:n]
 
 
-def _label(study: PopulationStudy, column: int) -> str:
-    row = CATALOGUE[study.keys[column]]
+def _label(study: PopulationStudy, key: str) -> str:
+    row = CATALOGUE[key]
     unit = "µm" if study.unit == "um" else study.unit
     power = {1: "", 2: "²", 3: "³", 5: "⁵"}
     suffix = f" ({unit}{power[row.dimension]})" if row.dimension else ""
