@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.coarsening.core.line_overlap import compound_distance
+from regolith_studio.coarsening.core.polyhedron_measures import polyhedron_of
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import attainable_errors
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.optimiser.search import TERMS
-from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import CoarseningResult, MethodResult
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS
@@ -52,11 +52,6 @@ def facets_for_vertices(n_vertices: int) -> int:
     """Most facets whose polyhedron has at most `n_vertices` vertices: 2 n - 4 in general position.
 
     For solvers that limit them (64 in PhysX, 128 in Box3D, 8 in exaDEM).
-
-    Raises
-    ------
-    InputError
-        If the budget is no whole number or does not reach for 5 facets.
     """
     return _facets_within(n_vertices, "vertices", 2, 4)
 
@@ -177,13 +172,7 @@ def _run_and_measure(
 
 
 def settings_of(method: str, settings: Any = None) -> Any:
-    """The settings of `method` from ``None``, a mapping of changes, or settings already made.
-
-    Raises
-    ------
-    InputError
-        If a name is no setting of the method, or a value is of another kind or out of its range.
-    """
+    """The settings of `method` from ``None``, a mapping of changes, or settings already made."""
     kind = _method(method).Settings
     if isinstance(settings, kind):
         return settings
@@ -211,13 +200,7 @@ def _wrong_kind(value: Any, default: Any) -> str:
 
 
 def check_kept(method: str, weights: LossWeights) -> None:
-    """Check that a method can keep what is to be kept exactly.
-
-    Raises
-    ------
-    InputError
-        If terms are named for a method that knows weights only.
-    """
+    """Refuse terms to be kept for a method that knows weights only."""
     if weights.keep and not _method(method).keeps_terms:
         able = ", ".join(key for key, each in METHODS.items() if each.keeps_terms)
         raise InputError(f"The method {method} knows weights only and keeps no term exactly; use {able}.")

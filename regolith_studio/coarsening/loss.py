@@ -20,17 +20,7 @@ from regolith_studio.geometry.minimum_box.hull_topology import Facets
 
 
 def loss(weights: LossWeights, errors: Mapping[str, float], jaccard_distance: float) -> float:
-    """Eq. 9: the weighted sum of the Jaccard distance (Eq. 7) and the relative errors (Eq. 8).
-
-    Parameters
-    ----------
-    weights
-        alpha of each term.
-    errors
-        Relative error of every descriptor of the loss.
-    jaccard_distance
-        In [0, 1]; may be NaN where its weight is 0.
-    """
+    """Eq. 9: the weighted sum of the Jaccard distance (Eq. 7, NaN without weight) and the relative errors."""
     total = sum(weights[key] * errors[key] for key in LOSS_KEYS if weights[key])
     return float(total + (weights[JACCARD] * jaccard_distance if weights[JACCARD] else 0.0))
 
@@ -42,17 +32,7 @@ NO_EDGE = 1e-8
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Errors of one polyhedron against the target.
-
-    Parameters
-    ----------
-    errors
-        Relative error of each descriptor (Eq. 8); NaN where it was not asked for.
-    jaccard_distance
-        Eq. 7; NaN where it was not asked for.
-    loss
-        Eq. 9.
-    """
+    """Errors (Eq. 8), Jaccard distance (Eq. 7) and loss (Eq. 9); NaN for what was not asked for."""
 
     errors: dict[str, float]
     jaccard_distance: float
@@ -60,13 +40,7 @@ class Evaluation:
 
 
 class LossFunction:
-    """Eq. 9 as a function of half-spaces.
-
-    Parameters
-    ----------
-    everything
-        Whether to evaluate terms with weight 0 too.
-    """
+    """Eq. 9 as a function of half-spaces; of terms with weight 0 too, if of `everything`."""
 
     def __init__(self, target: Target, weights: LossWeights, everything: bool = False) -> None:
         self._target = target

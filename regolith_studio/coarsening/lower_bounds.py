@@ -15,14 +15,9 @@ PREMISE_TOLERANCE = 1e-5
 
 
 def max_sphericity(n_facets: int) -> float:
-    """Upper bound of Wadell's sphericity of a convex polyhedron with `n_facets` facets (Goldberg 1935).
+    """Upper bound of Wadell's sphericity of a convex polyhedron with 4 or more facets (Goldberg 1935).
 
     Attained by the tetrahedron, the cube and the dodecahedron (n = 4, 6, 12).
-
-    Raises
-    ------
-    ValueError
-        If `n_facets` is below 4.
     """
     if n_facets < 4:
         raise ValueError(f"a polyhedron has at least 4 facets, got {n_facets}")

@@ -17,24 +17,9 @@ from regolith_studio.geometry.mesh import Mesh
 class Move:
     """One proposal, for a particle of unit volume with its centroid at the origin.
 
-    Parameters
-    ----------
-    plane
-        Index i of the point p_i that is moved.
-    points
-        The points with p_i', shape (n, 3).
-    sigma
-        Standard deviation of the step in each coordinate.
-    before
-        Errors and loss (Eq. 9) of the polyhedron as it was.
-    proposed
-        The same of the proposal; ``None`` where its half-spaces bound no polyhedron.
-    probability
-        T(k), with which a worse polyhedron is taken.
-    drawn
-        The uniform random number that was compared with T(k).
-    accepted
-        Whether the proposal is the polyhedron from now on.
+    Point number `plane` of the points (n, 3) was moved by a step of standard deviation `sigma` in each
+    coordinate. `proposed` is ``None`` where the half-spaces bound no polyhedron. A worse one is taken where
+    the random number `drawn` is below `probability`, T(k).
     """
 
     plane: int
@@ -56,18 +41,8 @@ class Move:
 class MethodStep:
     """One step of a method, for a particle of unit volume with its centroid at the origin.
 
-    Parameters
-    ----------
-    step, steps
-        Steps done, and how many there will be at most.
-    loss
-        Eq. 9 for `half_spaces`, as the method evaluates it.
-    half_spaces
-        The polyhedron, where it differs from that of the step before; else ``None``.
-    move
-        What was proposed and decided, where the method works by proposals.
-    compound
-        Makes the union of convex parts, in place of `half_spaces`, where the method makes one.
+    `steps` is how many there will be at most, `loss` Eq. 9 as the method evaluates it. The polyhedron is
+    ``None`` where it is that of the step before; `compound` makes the union of a method that makes one.
     """
 
     step: int
@@ -82,21 +57,10 @@ class MethodStep:
 class CoarseningProgress:
     """One step of a coarsening, in the unit of the particle.
 
-    Parameters
-    ----------
-    step, steps
-        Steps done, and how many there will be at most.
-    loss
-        Eq. 9 for the present polyhedron.
-    polyhedron
-        About `centre`, where it differs from that of the step before; else ``None``.
-    centre
-        The particle's centroid in its own frame, shape (3,).
-    recent
-        The last steps with this one, for a listener that does not receive each.
-    achieved, errors, jaccard_distance
-        Descriptors of the polyhedron, their relative errors (Eq. 8) and Eq. 7 as it follows from the loss,
-        NaN without weight; empty where the step was not measured.
+    The polyhedron is about `centre`, the particle's centroid in its own frame, and ``None`` where it is that
+    of the step before. `recent` has the last steps with this one, for a listener that does not receive each.
+    Descriptors, their relative errors (Eq. 8) and Eq. 7 as it follows from the loss (NaN without weight) are
+    empty where the step was not measured.
     """
 
     step: int

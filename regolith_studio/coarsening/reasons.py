@@ -79,12 +79,8 @@ def reason_for(
     """Sentences that name every term that is missed, what it costs, and missing facets.
 
     They say what was found; that more cannot be is said only where Goldberg's bound proves it. ``None`` where
-    all of `keep` is met to 1e-6 with `n_real` = `n_facets` facets.
-
-    Parameters
-    ----------
-    free_distance
-        The Jaccard distance where the overlap alone counts.
+    all of `keep` is met to 1e-6 with `n_real` = `n_facets` facets. `free_distance` is the Jaccard distance
+    where the overlap alone counts.
     """
     keys = tuple(keep)
     missed = missed_terms(target, achieved, keys)

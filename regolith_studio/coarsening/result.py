@@ -20,26 +20,11 @@ COSTLY_OVERLAP = 1.5
 class MethodResult:
     """What a method returns, for a particle of unit volume with its centroid at the origin.
 
-    Parameters
-    ----------
-    solid
-        Half-spaces of the polyhedron, or a union of convex parts.
-    loss_history
-        Eq. 9 after each step.
-    reason
-        Why the request is not met, in one sentence; ``None`` where it is met.
-    steps
-        Numbers worth knowing about the run: iterations, restarts, refused proposals ...
-    variants
-        Relative errors (and the Jaccard distance) of other readings of the result, by name.
-    polyhedron
-        By :meth:`ConvexPolyhedron.from_half_spaces`, where the method has made it already.
-    achieved
-        Of the solid by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
-    free_distance
-        The Jaccard distance that a descent on the overlap alone leads to, where there was one.
-    makes_compounds
-        Whether the method makes unions too: then a convex solid is not bound to miss V or CH.
+    The `reason` is one sentence, ``None`` where the request is met. `steps` are numbers worth knowing about
+    the run, `variants` relative errors (and the Jaccard distance) of other readings of the result.
+    `polyhedron` and `achieved` are those of the solid, where the method has made or measured it already;
+    `free_distance` is the Jaccard distance that a descent on the overlap alone leads to. A method that
+    `makes_compounds` is not bound to miss V or CH.
     """
 
     solid: HalfSpaces | ConvexCompound

@@ -17,13 +17,7 @@ MAX_SEED = 2**63 - 1
 
 @dataclass(frozen=True)
 class CoarseningSettings:
-    """What a polyhedron imitates, how it is found, and what says how fine it is.
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
-    """
+    """What a polyhedron imitates, how it is found, and what says how fine it is."""
 
     target: str = setting(
         "particle",

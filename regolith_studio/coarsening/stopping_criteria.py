@@ -122,13 +122,7 @@ def coarsen_below(mesh: Mesh | Target, limit: float, **options: Any) -> Coarseni
 
 
 def check_limit(limit: float) -> None:
-    """Check a limit of the largest error.
-
-    Raises
-    ------
-    InputError
-        If it is not a positive number.
-    """
+    """Refuse a largest error that is not a positive number."""
     if not 0.0 < limit < math.inf:
         raise InputError(f"The largest error must be above 0 per cent, got {100 * limit:g}.")
 

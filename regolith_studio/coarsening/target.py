@@ -5,8 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from regolith_studio.coarsening.core.overlap import jaccard, shared_volume
-from regolith_studio.coarsening.core.rays import cast, fibonacci_bundle
+from regolith_studio.coarsening.core.overlap import RayTable, jaccard, shared_volume
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, ShapeCache
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import GeometryError
@@ -15,6 +14,8 @@ from regolith_studio.geometry.half_spaces import HalfSpaces, exits
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox
+from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.vectors import along, cross, length, mixed, row
 
 MIN_SPAN = 1e-150
@@ -26,49 +27,15 @@ MAX_WRONG_CROSSINGS = 0.05
 """Share of wrong crossings above which a mesh counts as intersecting itself."""
 
 
-@dataclass(frozen=True)
-class RayTable:
-    """Every crossing of evenly spread rays from the origin with the unit-volume particle.
-
-    Parameters
-    ----------
-    directions
-        Unit vectors, shape (k, 3).
-    first
-        Crossings of ray k are ``first[k]:first[k + 1]``, shape (k + 1,).
-    distance
-        From the origin, rising along each ray.
-    sign
-        +1.0 where the ray leaves the particle, -1.0 where it enters.
-    weight
-        Share of the volume integral that each ray stands for, so that the quadrature's own volume is 1.
-    """
-
-    directions: FloatArray
-    first: IntArray
-    distance: FloatArray
-    sign: FloatArray
-    weight: float
-
-
 @dataclass(frozen=True, eq=False)
 class Target:
-    """A particle to be imitated.
+    """A particle to be imitated, and what was measured of it.
 
-    Parameters
-    ----------
-    mesh
-        Closed, outward-oriented, unit volume, centroid at the origin, principal axes along x, y, z.
-        Coordinates are rounded to 2^-26, vertices and triangles sorted by them, so that unit, place,
-        orientation and the order in which a file lists them do not matter.
-    centre
-        Centroid in the particle's own frame, shape (3,).
-    axes
-        Principal axes in the particle's own frame, one a row, shape (3, 3).
-    scale
-        Length in the particle's unit that one unit of `mesh` stands for.
-    descriptors, box
-        Of `mesh`; the box is the least one.
+    The mesh is closed, outward-oriented, of unit volume, with its centroid at the origin and its principal
+    axes along x, y, z. Coordinates are rounded to 2^-26, vertices and triangles sorted by them, so that unit,
+    place, orientation and the order in which a file lists them do not matter. Centroid (3,) and principal
+    axes (3, 3), one a row, are those in the particle's own frame; `scale` is the length in its unit that one
+    unit of the mesh stands for. Descriptors and least box are those of the mesh.
     """
 
     mesh: Mesh
@@ -106,17 +73,7 @@ class Target:
     @cached_property
     def rays(self) -> RayTable:
         """2,000 rays: error of the Jaccard distance about 0.0002."""
-        return self.ray_table(2000)
-
-    def ray_table(self, n_rays: int) -> RayTable:
-        """The crossings of `n_rays` Fibonacci directions."""
-        return self._crossings(self.mesh.vertices, n_rays)
-
-    def _crossings(self, vertices: FloatArray, n_rays: int) -> RayTable:
-        rays = fibonacci_bundle(n_rays)
-        first, distance, sign = cast(vertices, self.mesh.faces, rays)
-        weight = 3.0 / float(np.sum(sign * distance**3))
-        return RayTable(rays.directions, first, distance, sign, weight)
+        return _crossings(self.mesh, 2000)
 
     def jaccard_distance(self, half_spaces: HalfSpaces) -> float:
         """Eq. 7 with 16,000 rays, all volumes by the same quadrature.
@@ -135,7 +92,8 @@ class Target:
     @cached_property
     def _dense_rays(self) -> RayTable:
         """Crossings in coordinates y where x = stretch y."""
-        return self._crossings(self.mesh.vertices @ np.linalg.inv(self._stretch).T, 16_000)
+        vertices = self.mesh.vertices @ np.linalg.inv(self._stretch).T
+        return _crossings(Mesh(vertices, self.mesh.faces), 16_000)
 
     @cached_property
     def _stretch(self) -> FloatArray:
@@ -149,6 +107,16 @@ class Target:
     def in_unit_frame(self, half_spaces: HalfSpaces) -> HalfSpaces:
         """The inverse of :meth:`in_particle_frame`."""
         return HalfSpaces(half_spaces.normals @ self.axes.T, half_spaces.offsets / self.scale)
+
+
+def _crossings(mesh: Mesh, n_rays: int) -> RayTable:
+    """Those of `n_rays` Fibonacci directions with a mesh."""
+    directions = np.ascontiguousarray(fibonacci_directions(n_rays))
+    hits = radial_hits(mesh, np.zeros(3), directions)
+    first = np.concatenate([[0], np.cumsum(np.bincount(hits.ray, minlength=n_rays))])
+    # Copies: numba would compile kernels a second time for arrays that cannot be written.
+    distance, sign = np.array(hits.distance), hits.sign.astype(np.float64)
+    return RayTable(directions, first, distance, sign, 3.0 / float(np.sum(sign * distance**3)))
 
 
 def principal_axes(mesh: Mesh) -> FloatArray:

@@ -123,19 +123,7 @@ class LossWeights(Mapping[str, float]):
 
 @dataclass(frozen=True)
 class Preset:
-    """A named set of weights.
-
-    Parameters
-    ----------
-    name
-        Key, and stem of its file in ``resources/presets``.
-    label
-        As shown to a person.
-    weights
-        The weights themselves.
-    origin
-        Where the set comes from.
-    """
+    """A named set of weights: file stem in ``resources/presets``, label, weights and where they come from."""
 
     name: str
     label: str

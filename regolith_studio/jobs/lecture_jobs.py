@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from regolith_studio.coarsening.coarsen import coarsen, settings_of
+from regolith_studio.coarsening.core.polyhedron_measures import polyhedron_of
 from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
-from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep, Move
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target

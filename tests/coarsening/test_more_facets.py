@@ -8,8 +8,8 @@ import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron, polyhedron_of
 from regolith_studio.coarsening.optimiser.starts import with_waiting
-from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
@@ -97,6 +97,6 @@ def test_that_corners_are_cut_where_there_is_room() -> None:
         cuts, normals, offsets = insert_lost_facets(
             waiting.normals, waiting.offsets, rays.directions, rays.first, rays.distance, 0.3
         )
-        areas = facet_areas(HalfSpaces(normals, offsets))
+        areas = measure_polyhedron(normals, offsets).areas
         assert cuts == n_facets - 6
         assert areas.min() > 1e-3

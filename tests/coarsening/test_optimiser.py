@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import minimize
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.core.plane_coordinates import tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import tangents_of
 from regolith_studio.coarsening.optimiser.body import (
     BODY_VOLUME,
     N_BOXES,
@@ -21,10 +21,9 @@ from regolith_studio.coarsening.optimiser.body import (
     empty_body,
     fill_body,
 )
-from regolith_studio.coarsening.optimiser.box_check import box_memory
 from regolith_studio.coarsening.optimiser.descent import move
-from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
-from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
+from regolith_studio.coarsening.optimiser.followed_boxes import box_memory, check_boxes
+from regolith_studio.coarsening.optimiser.quadratic_model import fill_multipliers, solve_in_place
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
@@ -40,7 +39,7 @@ def test_that_multipliers_are_those_that_scipy_finds_for_the_dual(seed: int, sha
     rows = rng.normal(size=(6, 20))
     products, slopes, residuals = rows @ rows.T, rng.normal(size=6) * 5.0, rng.normal(size=6)
     low, high = -rng.uniform(0.1, 1.0, 6), rng.uniform(0.1, 1.0, 6)
-    found = np.empty(6)
+    found = np.zeros(6)
     fill_multipliers(products, slopes, residuals, low, high, share, np.empty((6, 7)), found)
     dual = minimize(
         lambda x: share / 2 * x @ products @ x + x @ (share * slopes - residuals),

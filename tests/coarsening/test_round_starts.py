@@ -5,9 +5,9 @@ import pytest
 from scipy.special import sph_harm_y
 
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.core.polyhedron_measures import polyhedron_of
 from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.optimiser.starts import round_start
-from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.target import Target
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh import Mesh

@@ -6,8 +6,8 @@ import pytest
 from benchmarks.independent import measured
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.intersection import FINE
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
 from regolith_studio.coarsening.optimiser.starts import grouped_start, hull_triangles
-from regolith_studio.coarsening.polyhedra import intersect_half_spaces
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
@@ -72,7 +72,7 @@ def test_that_starts_of_needles_end_within_reach() -> None:
     target = Target.of(Mesh(ball.vertices * (15.0, 1.7, 1.0), ball.faces))
     for seed in range(5):
         start = grouped_start(target, hull_triangles(target), 12, np.random.default_rng(seed))
-        assert intersect_half_spaces(start.normals, start.offsets).status == FINE
+        assert measure_polyhedron(np.array(start.normals), np.array(start.offsets)).status == FINE
 
 
 def test_that_a_box_with_a_corner_cut_off_is_its_own_result() -> None:

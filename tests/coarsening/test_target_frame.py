@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.polyhedra import polyhedron_of
+from regolith_studio.coarsening.core.polyhedron_measures import polyhedron_of
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh

@@ -43,18 +43,9 @@ SETTLED = 1e-11
 class Pose(NamedTuple):
     """A box at rest, or on the way there.
 
-    Parameters
-    ----------
-    axes, spans, extents
-        Axes, vectors between the vertices at their ends, and their extents.
-    slopes
-        Derivatives of the logarithms of the extents with a rotation.
-    conditions
-        Derivatives with a rotation of the three conditions: ties, and that the volume is stationary.
-    residuals
-        Of the conditions.
-    free
-        The turn that two ties leave free; zero with three.
+    Axes, vectors between the vertices at their ends, and extents; derivatives of the logarithms of the
+    extents with a rotation; those of the three conditions (ties, and that the volume is stationary) and their
+    residuals; the turn that two ties leave free, zero with three.
     """
 
     axes: tuple[Vector, Vector, Vector]
@@ -68,13 +59,7 @@ class Pose(NamedTuple):
 
 @kernel_noalloc
 def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: FloatArray) -> None:
-    """Fill a row of contacts for a box by its axes, one a row of `frame`.
-
-    Parameters
-    ----------
-    ties
-        Scratch, shape (3, 3).
-    """
+    """Fill a row of contacts for a box by its axes, one a row of `frame`; `ties` (3, 3) is scratch."""
     contact[0] = 0
     for axis in range(3):
         x = row(frame, axis)
@@ -110,12 +95,7 @@ def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: Fl
 def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: float) -> bool:
     """Turn the axes in `frame` until all conditions hold, by Newton's method; False where they cannot.
 
-    Parameters
-    ----------
-    points
-        Vertices of the row of contacts, shape (9, 3), as from :func:`fill_points`.
-    farthest
-        Most that the box may turn, in radians.
+    Points (9, 3) are those of :func:`fill_points`; the box may turn by `farthest` at most, in radians.
     """
     if contact[0] < 2:
         return False
@@ -232,13 +212,7 @@ def rested(
     """Settle a box so that it holds all vertices, with others in its row of contacts where it must be.
 
     A vertex that is left outside takes the place of one in that side; False where that leads nowhere.
-
-    Parameters
-    ----------
-    points
-        Filled with the vertices of the row of contacts, shape (9, 3).
-    farthest
-        As in :func:`settled`.
+    `points` (9, 3) is filled with the vertices of the row of contacts.
     """
     for _ in range(MAX_SWAPS):
         fill_points(vertices, contact, points)
@@ -283,14 +257,8 @@ def walk_to_minimum(
     """Turn a box until it is a local minimum, by an active-set method; False where that leads nowhere.
 
     The box settles on its ties. As long as a small turn that gives up one tie makes it smaller, it turns so
-    until another vertex touches. Where it cannot settle, it begins once more without ties.
-
-    Parameters
-    ----------
-    points, farthest
-        As in :func:`rested`.
-    start
-        Scratch, shape (3, 3).
+    until another vertex touches. Where it cannot settle, it begins once more without ties. `start` (3, 3) is
+    scratch.
     """
     for axis in range(3):
         start[axis, 0], start[axis, 1], start[axis, 2] = row(frame, axis)

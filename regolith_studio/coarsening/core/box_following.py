@@ -16,14 +16,7 @@ def extent_forces(points: FloatArray, contact: IntArray, frame: FloatArray, forc
     """Extents of a box at rest; `forces` takes d log(extent k) / d(vertex i), shape (3, 9, 3).
 
     The conditions keep holding while vertices move, which says how the box turns. Where they do not fix its
-    orientation, it is held.
-
-    Parameters
-    ----------
-    points
-        Vertices of the row of contacts, shape (9, 3).
-    frame
-        Axes, one a row.
+    orientation, it is held. Points (9, 3) are the vertices of the row of contacts, axes the rows of `frame`.
     """
     pose = pose_of(points, contact, frame)
     for k in range(3):

@@ -29,17 +29,10 @@ def fill_exposed_edges(
 ) -> int:
     """Number of exposed edges; fills as many as there is room for.
 
-    Parameters
-    ----------
-    normals, offsets, first
-        Half-spaces <n_i, x> <= h_i of all parts, those of part j being ``first[j]:first[j + 1]``.
-    vertices, edges
-        Of all parts: (v, 3), and rows (from, to, plane a, plane b), counter-clockwise around a; (e, 4).
-    covers
-        Scratch, shape (k, 2).
-    ends, planes
-        Filled: from and to, (m, 6), and rows (plane a, plane b, sign), (m, 3), counter-clockwise around the
-        exposed part of facet a and clockwise around that of b; sign -1 where two parts meet, else 1.
+    Half-spaces and `first` are those of :class:`regolith_studio.coarsening.core.parts.Planes`, vertices and
+    edges of all parts those of its polyhedra. Filled are from and to, (m, 6), and (plane a, plane b, sign),
+    (m, 3), counter-clockwise around the exposed part of facet a and clockwise around that of b; the sign is
+    -1 where two parts meet, else 1. `covers` (k, 2) is scratch.
     """
     count, k = int(np.int64(0)), len(first) - 1  # a literal 0 would be compiled by itself
     for e in range(len(edges)):

@@ -34,26 +34,13 @@ def insert_lost_facets(
     """Replace each half-space without a facet by a cut across the corner that hangs out farthest.
 
     A cut takes the share `depth` of the way to the nearest neighbouring corner, so no other facet is lost;
-    one of less than :data:`MIN_CUT` takes up to the share :data:`DEEPEST` instead.
+    one of less than :data:`MIN_CUT` takes up to the share :data:`DEEPEST` instead. At most so many (`most`)
+    are replaced, and so many corners that hang out farthest are passed over. Corners that touch a box with
+    these axes (3, 3) are left alone, where others have room, since a cut there would change the box to first
+    order.
 
-    Parameters
-    ----------
-    directions, first, distance
-        Rays, and the particle's crossings as from :func:`regolith_studio.coarsening.core.rays.cast`.
-    most
-        At most so many half-spaces are replaced; all that bound no facet where not given.
-    axes
-        Of the polyhedron's box, shape (3, 3): corners that touch it are left alone, where others have room,
-        since a cut there would change the box to first order.
-    passed
-        So many corners that hang out farthest are passed over.
-
-    Returns
-    -------
-    n_cuts
-        Half-spaces replaced; -1 if the half-spaces bound nothing.
-    normals, offsets
-        With the cuts, copies.
+    Returns how many were replaced (-1 if the half-spaces bound nothing), normals and offsets. Rays and
+    crossings are those of :class:`regolith_studio.coarsening.core.overlap.RayTable`.
     """
     normals, offsets, n_cuts = np.array(normals), np.array(offsets), 0
     for _ in range(len(offsets) if most is None else most):

@@ -26,16 +26,9 @@ NUMBER = 0
 class IntersectionWorkspace(NamedTuple):
     """Memory of one intersection; a vertex lives in a place that is used again when it has been cut off.
 
-    Parameters
-    ----------
-    place
-        Coordinates, and the height above the present plane: NaN where nobody lives, shape (4, places).
-    planes
-        Of the vertex in each place, shape (places, 3).
-    owner
-        Place of the vertex that owns the planes (a, b), shape (n + 4, n + 4).
-    lists
-        Places above the present plane, and those that are free, shape (2, places).
+    Of the places: coordinates, and the height above the present plane, NaN where no vertex lives, (4, p), and
+    the planes of the vertex (p, 3). `owner` is the place of the vertex that owns the planes (a, b), (n + 4, n
+    + 4); the lists (2, p) hold places above the present plane, and free ones.
     """
 
     place: FloatArray
@@ -72,14 +65,9 @@ def fill_vertices(
     counter-clockwise seen from outside; the edge between planes a and b runs, counter-clockwise around a,
     from the vertex that owns (b, a) to the one that owns (a, b).
 
-    Parameters
-    ----------
-    normals, offsets
-        Unit normals (n, 3) and positive offsets (n,), in general position.
-    reach
-        Distance of the tetrahedron's sides; a polyhedron that touches them counts as unbounded.
-    vertices, triples
-        Filled, shapes (2 n, 3): coordinates, and the planes of each vertex.
+    Unit normals (n, 3) and positive offsets (n,) are in general position; a polyhedron that touches the
+    tetrahedron's sides, at the distance `reach`, counts as unbounded. Coordinates and planes of each vertex
+    are filled, (2 n, 3).
     """
     place, planes, owner, lists = work
     n = len(offsets)

@@ -1,5 +1,7 @@
 """Volume shared by a polyhedron and a particle, by quadrature over rays from the origin."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
@@ -9,21 +11,26 @@ BLOCK = 256
 """Crossings that are worked out together: they stay in the fastest cache."""
 
 
+class RayTable(NamedTuple):
+    """Every crossing of evenly spread rays from the origin with a particle of unit volume.
+
+    Directions are unit vectors (k, 3). Crossings of ray k are ``first[k]:first[k + 1]``, their distances from
+    the origin rising, with the sign +1.0 where the ray leaves the particle and -1.0 where it enters. Each ray
+    stands for the share `weight` of the integral, so that the quadrature's own volume is 1.
+    """
+
+    directions: FloatArray
+    first: IntArray
+    distance: FloatArray
+    sign: FloatArray
+    weight: float
+
+
 @kernel_noalloc
 def shared_volume(
     first: IntArray, distance: FloatArray, sign: FloatArray, weight: float, radius: FloatArray
 ) -> float:
-    """Volume of the part of the particle inside the polyhedron.
-
-    Parameters
-    ----------
-    first, distance, sign
-        Crossings of the particle by ray, as from :func:`regolith_studio.coarsening.core.rays.cast`.
-    weight
-        Of each ray.
-    radius
-        Of the polyhedron along each ray, shape (k,).
-    """
+    """Volume of the part of the particle inside the polyhedron, from its radius along each ray, (k,)."""
     total = 0.0
     for k in range(len(radius)):
         r = radius[k]
@@ -45,14 +52,8 @@ def crossings_of(
 def shared_by_planes(dual: FloatArray, crossings: FloatArray, weight: float) -> float:
     """:func:`shared_volume` of half-spaces, where it does not matter which plane a ray meets.
 
-    Parameters
-    ----------
-    dual
-        n_i / h_i of half-spaces <n_i, x> <= h_i with h_i > 0, shape (n, 3).
-    crossings
-        Of the particle, as from :func:`crossings_of`.
-    weight
-        Of each ray.
+    `dual` is n_i / h_i of half-spaces <n_i, x> <= h_i with h_i > 0, (n, 3); crossings are those of
+    :func:`crossings_of`.
     """
     total, nearest = 0.0, np.empty(BLOCK)
     for start in range(0, crossings.shape[1], BLOCK):
@@ -84,14 +85,9 @@ def add_shared_charges(
     size: float,
     charges: FloatArray,
 ) -> None:
-    """Add `size` times the derivative of the shared volume: rays that end inside the particle count.
+    """Add `size` times the derivative of the shared volume, charges (n, 4): rays that end inside count.
 
-    Parameters
-    ----------
-    radius, plane
-        Where each ray leaves the polyhedron, as from :func:`regolith_studio.geometry.half_spaces.exits`.
-    charges
-        As in :mod:`regolith_studio.coarsening.core.polyhedron_measures`, shape (n, 4).
+    Radius and plane, (k,), are those of :func:`regolith_studio.geometry.half_spaces.exits`.
     """
     for k in range(len(radius)):
         r = radius[k]

@@ -35,17 +35,9 @@ N_EXPOSED, N_FACES, TOUCHING = 0, 1, 2
 class Planes(NamedTuple):
     """Half-spaces <n_i, x> <= h_i of k parts, about an origin that they have in common.
 
-    Parameters
-    ----------
-    normals, offsets
-        Of all parts, shapes (n, 3) and (n,); offsets may be negative.
-    first
-        Those of part j are ``first[j]:first[j + 1]``, shape (k + 1,).
-    inner
-        A point inside each part, shape (k, 3).
-    partner
-        Of parts that touch: the part on the other side of a plane that separates two and never moves, -1 of
-        the other planes, shape (n,); ``None`` of parts that may overlap.
+    Normals (n, 3) and offsets (n,), which may be negative, are those of all parts: ``first[j]:first[j + 1]``
+    of part j, with a point inside it, (k, 3). Of parts that touch, `partner` (n,) is the part on the other
+    side of a plane that separates two and never moves, -1 of the other planes.
     """
 
     normals: FloatArray
@@ -58,18 +50,10 @@ class Planes(NamedTuple):
 class Hull(NamedTuple):
     """The convex hull of v corners.
 
-    Parameters
-    ----------
-    faces, area_vectors, normals
-        Triangles by their corners, outward, their normals times their areas, and their normals, (m, 3).
-    edges
-        Rows (from, to, triangle a, triangle b), counter-clockwise around a, shape (3 m / 2, 4).
-    spokes, directions, distances, points, areas, centroids, work
-        Scratch: corners from their mean, and the dual polyhedron.
-    joggle
-        A factor of each corner, near 1.
-    forces
-        On the corners, (v, 3).
+    Faces to normals (m, 3) are triangles by their corners, outward, their normals times their areas, and
+    their normals; edges (3 m / 2, 4) are (from, to, triangle a, triangle b), counter-clockwise around a.
+    `joggle` is a factor of each corner, near 1. The others are scratch: corners from their mean, the dual
+    polyhedron, and forces on the corners (v, 3).
     """
 
     faces: IntArray
@@ -90,21 +74,12 @@ class Hull(NamedTuple):
 class Parts(NamedTuple):
     """Memory of what a union of k parts has beyond a convex polyhedron with as many half-spaces.
 
-    Parameters
-    ----------
-    first, partner
-        As of :class:`Planes`; `partner` is -1 everywhere of parts that may overlap.
-    inner
-        A point inside each part; its corners' mean, once it is measured.
-    counts
-        Exposed edges, triangles of the hull, and whether parts are to touch.
-    ends, edge_planes
-        Exposed edges, see :func:`regolith_studio.coarsening.core.exposed_edges.fill_exposed_edges`.
-    charges, curvature
-        Of the volume shared with the particle, and a second derivative of the volume in which they differ;
-        shapes (n, 4) and (n, 3, 3).
-    distances, centroids, covers, by, speeds, meet
-        Scratch.
+    `first` and `partner` are those of :class:`Planes`, -1 everywhere of parts that may overlap; `inner` is
+    the mean of a part's corners, once it is measured. Counts: exposed edges, triangles of the hull, whether
+    parts are to touch. For exposed edges see
+    :func:`regolith_studio.coarsening.core.exposed_edges.fill_exposed_edges`. Charges (n, 4) are of the volume
+    shared with the particle, `curvature` (n, 3, 3) is a second derivative of the volume in which they differ.
+    The others are scratch.
     """
 
     first: IntArray

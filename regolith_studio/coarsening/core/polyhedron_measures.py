@@ -1,4 +1,8 @@
-"""Vertices, edges, facets, volume and area of the polyhedron of half-spaces, and their derivatives.
+"""Polyhedra of half-spaces: vertices, facets and measures, how planes move, and derivatives.
+
+Plane i turns about its pivot: n' = normalise(n + (t1 e1 + t2 e2) / rho), h' = <n', pivot> + s, with tangents
+e1, e2 and a scale rho, so that the shift s and the tilts t1, t2 are lengths. The plane's speed at x is
+w(x) = ds - <dt1 e1 + dt2 e2, x - pivot> / rho.
 
 A *charge* of a plane is the derivative of a number with its motion: the rate per unit of speed, and its first
 moment about the plane's pivot. Where the plane moves outward at the speed w(x) = w0 + <g, x - pivot>, the
@@ -18,8 +22,10 @@ from regolith_studio.coarsening.core.intersection import (
     workspace_for,
 )
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.kernels import kernel_noalloc
-from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
+from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 NO_AREA = 1e-14
 """Facets of less area have no centroid of their own."""
@@ -28,20 +34,10 @@ NO_AREA = 1e-14
 class MeasuredPolyhedron(NamedTuple):
     """The polyhedron <n_i, x> <= h_i of n half-spaces; only status and half-spaces hold unless it is FINE.
 
-    Parameters
-    ----------
-    status
-        FINE, UNBOUNDED or DEGENERATE, as in :mod:`regolith_studio.coarsening.core.intersection`.
-    normals, offsets
-        Unit normals (n, 3) and positive offsets (n,).
-    vertices, triples
-        Shape (v, 3), and the three planes that meet in each, counter-clockwise seen from outside, (v, 3).
-    edges
-        Rows (from, to, plane a, plane b), counter-clockwise around a, with a < b; shape (e, 4).
-    areas, centroids
-        Of each facet, (n,) and (n, 3); a plane without a facet has area 0 and its foot point.
-    volume, surface_area
-        Of the whole.
+    The status is that of :mod:`regolith_studio.coarsening.core.intersection`. Vertices (v, 3) come with the
+    three planes that meet in each, counter-clockwise seen from outside; edges (e, 4) are (from, to, plane a,
+    plane b), counter-clockwise around a, with a < b. A plane without a facet has area 0, and its foot point
+    as centroid.
     """
 
     status: int
@@ -199,3 +195,99 @@ def add_force(charges: FloatArray, i: int, weight: float, at: Vector, pivots: Fl
     charges[i, 0] += weight
     for c in range(3):
         charges[i, 1 + c] += weight * (at[c] - pivots[i, c])
+
+
+def polyhedron_of(half_spaces: HalfSpaces) -> ConvexPolyhedron:
+    """The polyhedron of half-spaces, quick enough for every step of a method.
+
+    Where they are in no general position, it is that of :meth:`ConvexPolyhedron.from_half_spaces`.
+    """
+    size = float(half_spaces.offsets.max())
+    # Areas are compared with absolute tolerances.
+    # Copies: numba would compile kernels a second time for arrays that cannot be written.
+    found = measure_polyhedron(np.array(half_spaces.normals), half_spaces.offsets / size)
+    if found.status != FINE:
+        return ConvexPolyhedron.from_half_spaces(half_spaces)
+    n = len(half_spaces)
+    following: list[dict[int, int]] = [{} for _ in range(n)]
+    for start, end, left, right in found.edges.tolist():
+        following[left][start] = end
+        following[right][end] = start
+    kept = [plane for plane in range(n) if following[plane]]
+    facets = tuple(_loop(following[plane]) for plane in kept)
+    solid = HalfSpaces(half_spaces.normals[kept], half_spaces.offsets[kept])
+    return ConvexPolyhedron(solid, np.asarray(found.vertices * size), facets)
+
+
+def _loop(following: dict[int, int]) -> tuple[int, ...]:
+    """Vertices of a facet in order, from the map of each to the next."""
+    first = at = next(iter(following))
+    loop = [first]
+    while (at := following[at]) != first:
+        loop.append(at)
+    return tuple(loop)
+
+
+MIN_TILT_SCALE = 0.08
+"""Smallest scale of a tilt, in units of the particle's size (the cube root of its volume)."""
+
+
+def tangents_of(normals: FloatArray) -> FloatArray:
+    """Two tangents of each plane, shape (n, 2, 3)."""
+    rows, least = np.arange(len(normals)), np.abs(normals).argmin(axis=1)
+    one, two = (least + 1) % 3, (least + 2) % 3
+    tangents = np.zeros((len(normals), 2, 3))
+    first = tangents[:, 0]
+    first[rows, one], first[rows, two] = normals[rows, two], -normals[rows, one]
+    first /= np.sqrt((first * first).sum(axis=1))[:, None]
+    # np.cross takes ten times as long for so few
+    turned, again = [1, 2, 0], [2, 0, 1]
+    tangents[:, 1] = normals[:, turned] * first[:, again] - normals[:, again] * first[:, turned]
+    return tangents
+
+
+@kernel_noalloc
+def fill_tilt_scales(areas: FloatArray, scales: FloatArray) -> None:
+    """Fill rho of each plane: the radius of its facet, but not below :data:`MIN_TILT_SCALE`; shape (n,)."""
+    for i in range(len(areas)):
+        scales[i] = max(np.sqrt(max(areas[i], 0.0) / np.pi), MIN_TILT_SCALE)
+
+
+@kernel_noalloc
+def fill_moved(
+    normals: FloatArray,
+    pivots: FloatArray,
+    offsets: FloatArray,
+    tangents: FloatArray,
+    scales: FloatArray,
+    step: FloatArray,
+    turned: FloatArray,
+    shifted: FloatArray,
+    carried: FloatArray,
+) -> None:
+    """Fill normals, offsets and tangents after a step (3 n,); tangents are carried over without twist."""
+    for i in range(len(normals)):
+        old, first = row(normals, i), row(tangents[i], 0)
+        t1, t2 = step[3 * i + 1] / scales[i], step[3 * i + 2] / scales[i]
+        shrink = 1.0 / np.sqrt(1.0 + t1 * t1 + t2 * t2)
+        tilt = mixed(first, t1 * shrink, row(tangents[i], 1), t2 * shrink)
+        normal = mixed(old, shrink, tilt, 1.0)
+        # <n', pivot> + s; the pivot lies in the plane, so that <n, pivot> = h.
+        shifted[i] = step[3 * i] + offsets[i] * shrink + along(pivots, i, tilt)
+        first = mixed(first, 1.0, normal, -dot(first, normal))
+        first = mixed(first, 1.0 / length(first), first, 0.0)
+        second = cross(normal, first)
+        for c in range(3):
+            turned[i, c], carried[i, 0, c], carried[i, 1, c] = normal[c], first[c], second[c]
+
+
+@kernel_noalloc
+def fill_gradient(
+    charges: FloatArray, tangents: FloatArray, scales: FloatArray, gradient: FloatArray
+) -> None:
+    """Fill the derivative with the coordinates of every plane, shape (3 n,), from charges (n, 4)."""
+    for i in range(len(charges)):
+        moment: Vector = (charges[i, 1], charges[i, 2], charges[i, 3])
+        gradient[3 * i] = charges[i, 0]
+        gradient[3 * i + 1] = -along(tangents[i], 0, moment) / scales[i]
+        gradient[3 * i + 2] = -along(tangents[i], 1, moment) / scales[i]

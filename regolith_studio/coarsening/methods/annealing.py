@@ -27,27 +27,9 @@ GROW, SHRINK = 1.5, 0.9**0.5
 class AnnealingSettings:
     """Parameters of the procedure; the defaults are the paper's.
 
-    Parameters
-    ----------
-    start_temperature
-        T_0.
-    cooling
-        gamma of T(k) = T_0 gamma^k.
-    iterations
-        k_max.
-    step_factor
-        Standard deviation of a move in units of sigma = mean |p_i|.
-    best_so_far
-        Return the best polyhedron met instead of the last one (not in the paper).
-    adaptive_step
-        Let the standard deviation follow the share of improving moves (not in the paper).
-    facet_repair
-        Put half-spaces that bound no facet back as small cuts (not in the paper).
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    T(k) = T_0 gamma^k; the standard deviation of a move is `step_factor` times mean |p_i|. Not in the paper:
+    the best polyhedron met is the result; the standard deviation follows the share of improving moves;
+    half-spaces that bound no facet are put back as small cuts.
     """
 
     start_temperature: float = field(

@@ -41,22 +41,11 @@ EFFORTS = {"fast": SearchEffort(8, 3), "best": SearchEffort(16, 5)}
 
 @dataclass(frozen=True)
 class CompoundSettings:
-    """Parts and effort of the compound method.
+    """At most 2 to 8 convex parts, and the effort.
 
-    Parameters
-    ----------
-    parts
-        At most so many convex parts, 2 to 8.
-    joint
-        Parts ``overlap``, so that a solver sees a welded body, or ``touch`` in planes between them, so that
-        their volumes and masses add up.
-    level
-        ``fast`` (8 starts, the best 3 of which descend further) or ``best`` (16 and 5: better overlap).
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Parts ``overlap``, so that a solver sees a welded body, or ``touch`` in planes between them, so that their
+    volumes and masses add up. The level is ``fast`` (8 starts, the best 3 of which descend further) or
+    ``best`` (16 and 5: better overlap).
     """
 
     parts: int = field(

@@ -19,18 +19,9 @@ from regolith_studio.messages import N_
 class ExactSettings:
     """Effort of the exact method.
 
-    Parameters
-    ----------
-    level
-        ``fast`` (two starts, up to three more where these differ) or ``best`` (ten more, the better half of
-        which go on after 30 steps, and the best three to the end: better overlap).
-    retries
-        Further starts where none keeps what is to be kept.
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
+    Two starts, up to three more where these differ (``fast``), or ten more, the better half of which go on
+    after 30 steps, and the best three to the end (``best``: better overlap). Where none keeps what is to be
+    kept, so many further starts: `retries`.
     """
 
     level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(EFFORTS)})

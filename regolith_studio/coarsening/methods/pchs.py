@@ -24,13 +24,7 @@ COSTS = ("volume", "area")
 
 @dataclass(frozen=True)
 class PchsSettings:
-    """What each removed facet of the hull is to add least of: ``volume`` or ``area``.
-
-    Raises
-    ------
-    InputError
-        If `cost` is none of these.
-    """
+    """What each removed facet of the hull is to add least of: ``volume`` or ``area``."""
 
     cost: str = field(default="volume", metadata={"label": N_("Cost"), "choices": COSTS})
 
@@ -59,13 +53,7 @@ class PchsMethod:
         settings: PchsSettings,
         fewer: HalfSpaces | None = None,  # noqa: ARG002
     ) -> Generator[MethodStep, None, MethodResult]:
-        """One step.
-
-        Raises
-        ------
-        InputError
-            If the package ``pchs`` is not installed.
-        """
+        """One step, where the package ``pchs`` is installed."""
         try:
             pchs = import_module("pchs")
         except ImportError:

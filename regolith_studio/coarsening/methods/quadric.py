@@ -20,13 +20,7 @@ from regolith_studio.messages import N_
 
 @dataclass(frozen=True)
 class QuadricSettings:
-    """How the decimated mesh is read as a polyhedron.
-
-    Parameters
-    ----------
-    restore_volume
-        Scale the half-spaces' polyhedron to the volume of the particle.
-    """
+    """Whether the half-spaces' polyhedron is scaled to the volume of the particle."""
 
     restore_volume: bool = field(default=False, metadata={"label": N_("Restore the volume")})
 

@@ -37,11 +37,12 @@ from regolith_studio.coarsening.core.parts import (
     fill_hull,
     fill_union,
 )
-from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_tilt_scales
 from regolith_studio.coarsening.core.polyhedron_measures import (
     add_surface_charges,
     add_vertex_charges,
+    fill_gradient,
     fill_measures,
+    fill_tilt_scales,
 )
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
@@ -68,17 +69,10 @@ BODY_VOLUME, SURFACE, JACCARD = 0, 1, 2
 
 
 class Prices(NamedTuple):
-    """What the loss pays for each term.
+    """What the loss pays for V, S, D_min, D_max, AR, CH.
 
-    Parameters
-    ----------
-    wanted
-        Values of V, S, D_min, D_max, AR, CH, shape (6,).
-    low, high
-        Derivatives of the loss below and above a residual of 0, shape (6,): low <= 0 <= high. Both are 0 for
-        CH of a convex polyhedron, which is V.
-    overlap
-        Price of the Jaccard distance, above 0.
+    Wanted values, and the derivatives of the loss below and above a residual of 0, low <= 0 <= high, all
+    (6,); both are 0 for CH of a convex polyhedron, which is V. The Jaccard distance has a price above 0.
     """
 
     wanted: FloatArray
@@ -90,26 +84,13 @@ class Prices(NamedTuple):
 class Body(NamedTuple):
     """Memory of one polyhedron with n half-spaces.
 
-    Parameters
-    ----------
-    normals, offsets, tangents, scales
-        Of the planes, as in :mod:`regolith_studio.coarsening.core.plane_coordinates`.
-    vertices, triples, edges, areas, centroids
-        As in :class:`regolith_studio.coarsening.core.polyhedron_measures.MeasuredPolyhedron`, the first three
-        with room to spare.
-    counts
-        Number of vertices, number of boxes.
-    numbers
-        Volume, surface area, Jaccard distance.
-    frames, contacts, planes, extents
-        Of the boxes, the measured one first; shapes (b, 3, 3), (b, 13), (b, 9, 3) and (b, 3).
-    residuals, rows
-        Of the terms, the middle edge and vertices that nearly tie, shapes (14,) and (14, 3 n).
-    slack, rival_rows
-        volume / volume of the measured box - 1 of the boxes, and the derivatives; the first is 0.
-    parts
-        Of a union, whose vertices are those of all parts, and whose areas are exposed ones; ``None`` of a
-        convex polyhedron.
+    Planes, and vertices to centroids, as in :mod:`regolith_studio.coarsening.core.polyhedron_measures`, the
+    vertices, triples and edges with room to spare. Counts: vertices, boxes; numbers: volume, surface area,
+    Jaccard distance. Frames (b, 3, 3), contacts (b, 13), planes (b, 9, 3) and extents (b, 3) of the boxes,
+    the measured one first. Residuals (14,) and rows (14, 3 n) of the terms, the middle edge and vertices that
+    nearly tie. Slack is volume / volume of the measured box - 1 of the boxes, with its derivatives (b, 3 n).
+    The vertices of a union are those of all parts, and its areas are exposed ones; a convex polyhedron has no
+    parts.
     """
 
     normals: FloatArray
@@ -137,17 +118,9 @@ class Body(NamedTuple):
 class BodyScratch(NamedTuple):
     """Memory that the measurement of any body uses.
 
-    Parameters
-    ----------
-    points, forces, charges, gradients
-        Nine vertices of a box (9, 3), forces on them (3, 9, 3), charges of the planes (n, 4), derivatives of
-        the logarithms of a box's edges (3, 3 n).
-    owner
-        Vertex that owns two planes, (n, n).
-    start, ties
-        Axes, (3, 3).
-    contact
-        A row of contacts, (13,).
+    Nine vertices of a box (9, 3), forces on them (3, 9, 3), charges of the planes (n, 4), derivatives of the
+    logarithms of a box's edges (3, 3 n), the vertex that owns two planes (n, n), two frames (3, 3) and a row
+    of contacts (13,).
     """
 
     intersection: IntersectionWorkspace
@@ -204,14 +177,9 @@ def body_scratch(n: int) -> BodyScratch:
 
 @kernel_noalloc
 def fill_body(body: Body, wanted: FloatArray, needs_box: bool, scratch: BodyScratch) -> bool:
-    """Measure the half-spaces of a body; its boxes are followed. False where they bound no polyhedron.
+    """Measure the half-spaces of a body against wanted values (6,); False where they bound no polyhedron.
 
-    Parameters
-    ----------
-    wanted
-        Values of the terms, shape (6,).
-    needs_box
-        Whether the terms of the box are to be measured.
+    Its boxes are followed where a term needs them.
     """
     if not _fill_shape(body, body.parts, scratch):
         return False
@@ -320,6 +288,8 @@ def _follow_boxes(body: Body, scratch: BodyScratch) -> None:
         for k in range(3):
             owner[triples[v, k], triples[v, (k + 1) % 3]] = v
     for b in range(body.counts[N_BOXES]):
+        if body.slack[b] == GONE:
+            continue
         contact, frame = body.contacts[b], body.frames[b]
         update_vertex_ids(vertices, contact, frame, body.planes[b], owner, triples)
         found = walk_to_minimum(vertices, contact, frame, points, scratch.start, MAX_TURN)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from regolith_studio.coarsening.core.line_overlap import ScanLines, scan_lines
 from regolith_studio.coarsening.core.parts import Planes
-from regolith_studio.coarsening.core.plane_coordinates import tangents_of
-from regolith_studio.coarsening.core.scan_lines import ScanLines, scan_lines
+from regolith_studio.coarsening.core.polyhedron_measures import tangents_of
 from regolith_studio.coarsening.optimiser.body import N_TERMS, Prices
 from regolith_studio.coarsening.optimiser.descent import LOCK, descend
 from regolith_studio.coarsening.optimiser.memory import Memory, memory_for
@@ -88,15 +88,7 @@ def search_compound(
 ) -> Generator[CompoundCandidate, None, CompoundCandidate]:
     """A candidate for each start and each better one of the last descents; returns the best.
 
-    Parameters
-    ----------
-    touching
-        Whether parts touch in planes between them, instead of overlapping.
-
-    Raises
-    ------
-    GeometryError
-        If no start bounds a compound.
+    Parts that are `touching` meet in planes between them, instead of overlapping.
     """
     prices = prices_of_union(target, weights, frozenset(asked_terms(weights)))
     lines, axes = scan_lines(target.mesh, FEW_LINES), target.box.axes
@@ -165,7 +157,19 @@ def _descended(
     memory: Memory = memory_for(len(offsets), 0, planes)
     tangents = tangents_of(normals)
     sound, merit, worst, distance = descend(
-        lines, prices, axes, steps, radius, 0, False, False, normals, offsets, tangents, memory
+        lines,
+        prices,
+        axes,
+        steps,
+        radius,
+        0,
+        False,
+        False,
+        np.empty((0, 3, 3)),
+        normals,
+        offsets,
+        tangents,
+        memory,
     )
     if not sound or memory.one.parts is None:
         return None
@@ -192,16 +196,8 @@ def initial_planes(
 ) -> Planes | None:
     """Half-spaces of `n_parts` parts that fill the particle, `n_facets` in all.
 
-    Parameters
-    ----------
-    touching
-        Whether neighbours touch in the plane half-way between their centres, which counts as a facet of
-        both; else they overlap a little.
-
-    Returns
-    -------
-    Planes or None
-        ``None`` where so few facets do not suffice for parts that touch.
+    Parts that are `touching` meet in the plane half-way between their centres, which counts as a facet of
+    both; ``None`` where so few facets do not suffice for it. Others overlap a little.
     """
     points = points_inside(lines, N_POINTS, rng)
     clusterings = [_clustered(points, n_parts, rng) for _ in range(N_CLUSTERINGS)]

@@ -11,12 +11,10 @@ rival from then on: a condition that keeps it above the measured box.
 
 import numpy as np
 
-from regolith_studio.coarsening.core.line_overlap import fill_shared_with_lines
-from regolith_studio.coarsening.core.overlap import add_shared_charges, shared_volume
+from regolith_studio.coarsening.core.line_overlap import ScanLines, fill_shared_with_lines
+from regolith_studio.coarsening.core.overlap import RayTable, add_shared_charges, shared_volume
 from regolith_studio.coarsening.core.parts import Parts
-from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_moved
-from regolith_studio.coarsening.core.polyhedron_measures import add_volume_charges
-from regolith_studio.coarsening.core.scan_lines import ScanLines
+from regolith_studio.coarsening.core.polyhedron_measures import add_volume_charges, fill_gradient, fill_moved
 from regolith_studio.coarsening.optimiser.body import (
     BODY_VOLUME,
     FIRST_TIE,
@@ -38,9 +36,13 @@ from regolith_studio.coarsening.optimiser.body import (
     fill_box_terms,
 )
 from regolith_studio.coarsening.optimiser.followed_boxes import add_box, check_boxes
-from regolith_studio.coarsening.optimiser.memory import Memory, Rays, Steps
-from regolith_studio.coarsening.optimiser.metric import fill_first_metric, update_metric
-from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
+from regolith_studio.coarsening.optimiser.memory import Memory, Steps
+from regolith_studio.coarsening.optimiser.quadratic_model import (
+    fill_first_metric,
+    fill_multipliers,
+    solve_in_place,
+    update_metric,
+)
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import exits
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
@@ -53,26 +55,27 @@ KEPT = 20.0
 CLEARANCE, PRESSING = 2e-4, 1e-4
 """Rivals are brought above the measured box by the first share of its volume, and cost below the second: the
 way between them keeps rivals that only come near from deciding over steps."""
-CHECK_EVERY, CHECK_SHARE = 8, 6
+CHECK_EVERY, CHECK_SHARE, CHECK_MOVE = 12, 6, 0.02
 """Accepted steps between two searches for smaller boxes: at least so many, and a half-space in so many, as a
-search takes longer than a step where there are many."""
-MET = 1e-9
-"""Residuals of terms at a kink after the corrections of a step."""
+search takes longer than a step where there are many; and so long in all, as no box becomes smaller before."""
+MET, INEXACT = 1e-9, 1e-4
+"""Residuals of terms at a kink after the corrections of a step, absolute, or as a share of what the step is
+to gain: the price of such a residual is a hundredth of that."""
 CORRECTIONS = 5
 MAX_RADIUS, RESTART_RADIUS, MIN_RADIUS = 0.25, 0.02, 2e-4
 SHRINK, GOOD = 0.35, 0.5
-MIN_GAIN = 1e-6
-"""The descent ends where a step brings less of the Jaccard distance."""
+MIN_GAIN = 1e-5
+"""The descent ends where two steps bring less of the Jaccard distance, whose rays miss 2e-4 of it."""
 NEAR_KINK = -0.1
 """Rows of the middle edge and of the next vertex with a larger residual take part in the steps."""
 TIED = 1e-3
 """Where corrections lead nowhere, vertices that tie up to this residual are corrected together."""
-STEPS, CHECKS = 0, 1
+STEPS, CHECKS, FOLLOWED = 0, 1, 2
 
 
 @kernel
 def descend(
-    rays: Rays | ScanLines,
+    rays: RayTable | ScanLines,
     prices: Prices,
     start_axes: FloatArray,
     max_steps: int,
@@ -80,6 +83,7 @@ def descend(
     held: int,
     steady: bool,
     restoring: bool,
+    followed: FloatArray,
     normals: FloatArray,
     offsets: FloatArray,
     tangents: FloatArray,
@@ -87,38 +91,20 @@ def descend(
 ) -> tuple[bool, float, float, float]:
     """Descend from half-spaces, which are replaced by those of the end.
 
-    Parameters
-    ----------
-    start_axes
-        Of the particle's box, one a row: the box of the polyhedron that lies like it is measured, where it is
-        nearly the least; shape (3, 3). Where only what is kept is restored, those of the box before: whether
-        another is smaller is asked at the end.
-    max_steps, radius
-        Of the descent; the radius is the longest move of a plane in a step, at first.
-    held
-        So many of the half-spaces, the first ones, do not move.
-    steady
-        Whether small facets hold still, so that none is lost.
-    restoring
-        Whether the overlap does not count: what is kept is restored, no more.
-    normals, offsets, tangents
-        In place, shapes (n, 3), (n,) and (n, 2, 3).
-    memory
-        ``memory.scratch.start`` takes the axes of the measured box, if there is one, ``memory.residuals``
-        those of the terms, and ``memory.one.parts.inner``, if there are parts, holds their inner points.
+    The axes of the particle's box are those of the box that is measured, where the one that lies like it is
+    nearly the least; `followed` (b, 3, 3) are those of the boxes that a descent before followed, the measured
+    one first: then another is looked for only after some steps and at the end. A plane moves by `radius` in a
+    step at first; the first ones, `held` of them, do not move. Where it is `steady`, small facets hold still,
+    so that none is lost; where it is `restoring`, the overlap does not count.
 
-    Returns
-    -------
-    sound
-        False where the half-spaces bound no polyhedron, or one without a box.
-    merit
-        The loss with its rivals.
-    worst
-        Largest residual of a term with the price LOCK.
-    jaccard_distance
-        By the rays.
+    ``memory.frames`` takes the axes of ``memory.counts[2]`` boxes that are followed at the end,
+    ``memory.residuals`` the residuals of the terms; ``memory.one.parts.inner``, if there are parts, holds
+    their inner points.
+
+    Returns whether the half-spaces bound a polyhedron, with a box where it needs one, the loss with its
+    rivals, the largest residual of a term with the price LOCK, and the Jaccard distance by the rays.
     """
-    here, there, scratch, boxes, work, counts, residuals = memory
+    here, there, scratch, boxes, work, counts, residuals, frames = memory
     here.normals[:], here.offsets[:], here.tangents[:] = normals, offsets, tangents
     here.counts[N_BOXES] = 0
     needs_box = False
@@ -127,8 +113,9 @@ def descend(
     if not fill_body(here, prices.wanted, needs_box, scratch):
         return False, np.inf, np.inf, 1.0
     unchecked, check_every = 0, max(CHECK_EVERY, len(offsets) // CHECK_SHARE)
-    if needs_box and restoring:
-        add_box(here, start_axes, scratch)
+    if needs_box and len(followed) > 0:
+        for b in range(len(followed)):
+            add_box(here, followed[b], scratch)
         fill_box_terms(here, prices.wanted, scratch)
         unchecked = 1
     elif needs_box:
@@ -138,7 +125,7 @@ def descend(
     fill_overlap_gradient(here, here.parts, rays, pull, work, work.gradient)
     fill_first_metric(here, rays, prices.overlap, held, steady, work)
     merit = merit_of(here, prices)
-    failures, small = 0, 0
+    failures, small, moved = 0, 0, 0.0
     for _ in range(max_steps):
         counts[STEPS] += 1
         gain, length = _step(here, there, rays, prices, pull, needs_box, radius, merit, scratch, work)
@@ -148,7 +135,7 @@ def descend(
                 work.gradient[j] = work.trial_gradient[j]
             merit = merit_of(here, prices)
             radius = min(MAX_RADIUS, max(radius, 2.0 * length)) if work.slopes[0] > GOOD else radius
-            failures, unchecked = 0, unchecked + 1
+            failures, unchecked, moved = 0, unchecked + 1, moved + length
             small = small + 1 if gain < MIN_GAIN * prices.overlap else 0
         else:
             radius, failures = SHRINK * min(radius, length if length > 0.0 else radius), failures + 1
@@ -156,8 +143,9 @@ def descend(
                 fill_first_metric(here, rays, prices.overlap, held, steady, work)
                 radius, failures, small = RESTART_RADIUS, failures + 2, small + (failures > 3)
         done = small >= 2 or failures > 8
-        if needs_box and (unchecked >= check_every or (done and unchecked > 0)):
-            unchecked, counts[CHECKS] = 0, counts[CHECKS] + 1
+        far = unchecked >= check_every and moved >= CHECK_MOVE
+        if needs_box and (far or (done and unchecked > 0)):
+            unchecked, moved, counts[CHECKS] = 0, 0.0, counts[CHECKS] + 1
             if check_boxes(here, prices, start_axes, boxes, scratch):
                 merit, done, small, failures = merit_of(here, prices), False, 0, 0
                 radius = max(radius, RESTART_RADIUS)
@@ -167,8 +155,11 @@ def descend(
         merit = merit_of(here, prices)
     normals[:], offsets[:], tangents[:] = here.normals, here.offsets, here.tangents
     _carry_inner(here.parts, here, memory.one.parts)
-    if needs_box:
-        scratch.start[:] = here.frames[0]
+    counts[FOLLOWED] = 0
+    for b in range(here.counts[N_BOXES]):
+        if here.slack[b] != GONE:
+            frames[counts[FOLLOWED]] = here.frames[b]
+            counts[FOLLOWED] += 1
     worst = 0.0
     for r in range(N_TERMS):
         residuals[r] = here.residuals[r]
@@ -180,7 +171,7 @@ def descend(
 
 
 @kernel
-def fill_overlap(body: Body, parts: Parts | None, rays: Rays | ScanLines, work: Steps) -> None:
+def fill_overlap(body: Body, parts: Parts | None, rays: RayTable | ScanLines, work: Steps) -> None:
     """Jaccard distance to the particle of unit volume; the rays' exits stay in `work`."""
     if parts is None:
         exits(body.normals, body.offsets, rays.directions, work.radius, work.plane)
@@ -202,7 +193,7 @@ def fill_overlap(body: Body, parts: Parts | None, rays: Rays | ScanLines, work: 
 def fill_overlap_gradient(
     body: Body,
     parts: Parts | None,
-    rays: Rays | ScanLines,
+    rays: RayTable | ScanLines,
     price: float,
     work: Steps,
     gradient: FloatArray,
@@ -249,7 +240,7 @@ def merit_of(body: Body, prices: Prices) -> float:
 def _step(
     here: Body,
     there: Body,
-    rays: Rays | ScanLines,
+    rays: RayTable | ScanLines,
     prices: Prices,
     pull: float,
     needs_box: bool,
@@ -272,7 +263,7 @@ def _step(
         return 0.0, length
     for j in range(len(work.step)):
         work.total[j] = work.step[j]
-    if not correct(there, prices, needs_box, scratch, work):
+    if not correct(there, prices, needs_box, max(MET, INEXACT * predicted), scratch, work):
         return 0.0, length
     fill_overlap(there, there.parts, rays, work)
     gain = merit - merit_of(there, prices)
@@ -348,6 +339,8 @@ def fill_products(m: int, work: Steps) -> None:
 def solve_step(m: int, radius: float, work: Steps) -> tuple[float, float]:
     """Fill the step, at most as long as `radius`: the decrease that the model predicts, and the length."""
     size, share, length = len(work.gradient), 1.0, 0.0
+    for r in range(m):
+        work.multipliers[r] = 0.0
     for _ in range(12):
         fill_multipliers(
             work.products[:m, :m],
@@ -428,6 +421,7 @@ def correct(
     there: Body,
     prices: Prices,
     needs_box: bool,
+    tolerance: float,
     scratch: BodyScratch,
     work: Steps,
 ) -> bool:
@@ -438,7 +432,7 @@ def correct(
     size, before, tied = len(work.step), np.inf, 0.0
     for _ in range(CORRECTIONS):
         count, worst = _gather_kinks(there, prices, tied, work)
-        if worst < MET:
+        if worst < tolerance:
             return True
         if worst > before and tied == 0.0 and worst < TIED:
             tied = TIED  # two vertices take turns at the end of an edge

@@ -14,45 +14,21 @@ from regolith_studio.coarsening.optimiser.body import (
     body_scratch,
     empty_body,
 )
-from regolith_studio.coarsening.optimiser.box_check import BoxMemory, box_memory
+from regolith_studio.coarsening.optimiser.followed_boxes import BoxMemory, box_memory
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 N_ROWS = N_FIXED + MAX_BOXES
 
 
-class Rays(NamedTuple):
-    """Crossings of rays with the particle, as :class:`regolith_studio.coarsening.target.RayTable`."""
-
-    directions: FloatArray
-    first: IntArray
-    distance: FloatArray
-    sign: FloatArray
-    weight: float
-
-
 class Steps(NamedTuple):
     """Memory of the steps, for n half-spaces and k rays.
 
-    Parameters
-    ----------
-    metric
-        Approximate inverse of the Lagrangian's second derivative, shape (3 n, 3 n).
-    gradient, trial_gradient, step, total, change
-        Shape (3 n,): of the overlap at both bodies, the step, with its corrections, and of the Lagrangian.
-    rows, across
-        Rows and their products with the metric, shapes (22, 3 n) and (23, 3 n), the gradient's last.
-    residuals, low, high, multipliers, slopes
-        Of the rows, shape (22,).
-    products, factor
-        Shapes (22, 22) and (22, 23).
-    diagonal
-        Of the metric that a descent begins with, (3 n,).
-    radius, plane
-        Where each ray leaves the polyhedron, shape (k,).
-    charges
-        Shape (n, 4).
-    curvature
-        Second derivatives of the overlap with each plane alone, (n, 3, 3).
+    The metric approximates the inverse of the Lagrangian's second derivative, (3 n, 3 n). Of shape (3 n,) are
+    the gradients of the overlap at both bodies, the step, all of it with its corrections, and the change of
+    the Lagrangian's gradient. Rows are (22, 3 n), their products with the metric (23, 3 n) with the
+    gradient's last; residuals to slopes (22,). `diagonal` (3 n,) is that of the first metric, `curvature` (n,
+    3, 3) the second derivative of the overlap with each plane alone; each ray leaves the polyhedron at a
+    radius, through a plane.
     """
 
     metric: FloatArray
@@ -78,7 +54,10 @@ class Steps(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """All memory of descents with n half-spaces; counts of steps, and the terms' residuals at the end."""
+    """All memory of descents with n half-spaces.
+
+    Counts of steps, checks and boxes; the terms' residuals and the boxes' axes (8, 3, 3) at the end.
+    """
 
     one: Body
     two: Body
@@ -87,6 +66,7 @@ class Memory(NamedTuple):
     steps: Steps
     counts: IntArray
     residuals: FloatArray
+    frames: FloatArray
 
 
 def memory_for(n: int, n_rays: int, planes: Planes | None = None) -> Memory:
@@ -116,7 +96,14 @@ def memory_for(n: int, n_rays: int, planes: Planes | None = None) -> Memory:
         np.empty((n, 4)),
         np.empty((n, 3, 3)),
     )
-    boxes, counts = box_memory(n_facets, 2 * n), np.zeros(2, np.int64)
+    boxes, counts = box_memory(n_facets, 2 * n), np.zeros(3, np.int64)
     return Memory(
-        empty_body(n, one), empty_body(n, two), body_scratch(n), boxes, steps, counts, np.zeros(N_TERMS)
+        empty_body(n, one),
+        empty_body(n, two),
+        body_scratch(n),
+        boxes,
+        steps,
+        counts,
+        np.zeros(N_TERMS),
+        np.empty((MAX_BOXES, 3, 3)),
     )

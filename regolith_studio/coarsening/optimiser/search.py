@@ -7,13 +7,12 @@ from functools import cached_property
 import numpy as np
 
 from regolith_studio.coarsening.core.facet_insertion import MIN_FACET
-from regolith_studio.coarsening.core.plane_coordinates import tangents_of
-from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron, tangents_of
 from regolith_studio.coarsening.loss import LossFunction, loss
 from regolith_studio.coarsening.lower_bounds import sphericity_reason, volume_is_preferred
 from regolith_studio.coarsening.optimiser.body import Prices
-from regolith_studio.coarsening.optimiser.descent import LOCK, MAX_RADIUS, descend
-from regolith_studio.coarsening.optimiser.memory import Memory, Rays, memory_for
+from regolith_studio.coarsening.optimiser.descent import FOLLOWED, LOCK, MAX_RADIUS, descend
+from regolith_studio.coarsening.optimiser.memory import Memory, memory_for
 from regolith_studio.coarsening.optimiser.starts import (
     N_SIDES,
     box_start,
@@ -61,8 +60,6 @@ DIRECT = 62
 """Where more facets are asked for, no start has so many: growth leads to as much with less effort."""
 FACTOR = 2.5
 """Half-spaces after and before each stage of cuts."""
-ROUNDS = 3
-"""At most so many times half-spaces without a facet become cuts."""
 FREE_RADIUS, FIRST_RADIUS, FURTHER_RADIUS = 0.1, 0.2, 0.05
 """Longest moves at first; all but the first shrink with the square root of the number of facets."""
 CUT_COST = 2e-3
@@ -99,22 +96,9 @@ EFFORTS = {"fast": SearchEffort(2, 1), "best": SearchEffort(10, 3, raced=5)}
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """Where a descent ended.
+    """Where a descent ended, at unit volume: the loss as it sees it, and the largest residual to be kept.
 
-    Parameters
-    ----------
-    half_spaces
-        At unit volume.
-    merit
-        The loss as the descent sees it.
-    worst
-        Largest residual of what is to be kept.
-    errors
-        Relative errors of the terms (Eq. 8), for the box that the descent follows.
-    n_facets
-        Half-spaces that bound a facet.
-    axes
-        Of its box; ``None`` where no term is about the box.
+    The relative errors of the terms (Eq. 8) are for the box that it follows, the first of `axes`, (b, 3, 3).
     """
 
     half_spaces: HalfSpaces
@@ -122,7 +106,7 @@ class Candidate:
     worst: float
     errors: Mapping[str, float]
     n_facets: int
-    axes: FloatArray | None
+    axes: FloatArray
 
     @property
     def met(self) -> bool:
@@ -179,16 +163,8 @@ Planes = tuple[FloatArray, FloatArray, FloatArray]
 class Search:
     """Starts one after the other, and the best of what they lead to.
 
-    Parameters
-    ----------
-    keep
-        Terms that are kept exactly.
-    efforts
-        One after the other, so that more effort contains less.
-    retries
-        Further starts where none keeps what is to be kept.
-    fewer
-        Half-spaces of a result with fewer facets at unit volume, from which one more start is made.
+    Terms in `keep` are kept exactly; where no start does so, there are `retries` more. `fewer` are the
+    half-spaces, at unit volume, of a result with fewer facets, from which one more start is made.
     """
 
     def __init__(
@@ -209,8 +185,7 @@ class Search:
         self._prices = prices_of(target, weights, keep)
         nothing = np.zeros(len(TERMS))
         self._free_prices = self._prices._replace(low=nothing, high=nothing)
-        rays = target.rays
-        self._rays = Rays(rays.directions, rays.first, rays.distance, rays.sign, rays.weight)
+        self._rays = target.rays
         keeps = "sphericity" in keep
         self._stage = stage_below(target, n_facets, keeps)
         self._plan = first_starts(target, n_facets, keeps, self._stage)
@@ -228,13 +203,7 @@ class Search:
         self._before = 0
 
     def steps(self) -> Generator[MethodStep, None, MethodResult]:
-        """A step for each better polyhedron, and the result; the first is the first start itself.
-
-        Raises
-        ------
-        GeometryError
-            If no start bounds a polyhedron.
-        """
+        """A step for each better polyhedron, and the result; the first is the first start itself."""
         own = self._itself
         if own is not None:
             yield self._step(0, own.half_spaces)
@@ -265,11 +234,11 @@ class Search:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
         for candidate in sorted(self._found, key=self._rank)[: self._effort.finalists]:
             steps = LAST_STEPS if self._n_facets <= DIRECT else FURTHER_STEPS
-            last = self._descended(candidate.half_spaces, steps, FURTHER_RADIUS) or candidate
+            last = self._further(candidate, steps, FURTHER_RADIUS) or candidate
             yield from self._record(tried, last)
             whole = self._with_facets(last)
             yield from self._record(tried, whole)
-            even = self._descended(whole.half_spaces, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
+            even = self._further(whole, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
             yield from self._record(tried, even)
         yield from self._made_whole(tried, few)
         solid, achieved = self._confirmed()
@@ -319,7 +288,7 @@ class Search:
             whole = None if begun is None else self._with_facets(begun)
             if whole is not None and whole.met and whole.n_facets == n_facets:
                 yield from self._record(tried, whole)
-                even = self._descended(whole.half_spaces, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
+                even = self._further(whole, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
                 yield from self._record(tried, even)
                 return
 
@@ -364,7 +333,7 @@ class Search:
         for size in sorted({len(each.half_spaces.offsets) for each in race}) if tried == first else ():
             same = [each for each in race if len(each.half_spaces.offsets) == size]
             for each in sorted(same, key=lambda each: each.rank(0))[:raced]:
-                further = self._descended(each.half_spaces, STEPS, FURTHER_RADIUS) or each
+                further = self._further(each, STEPS, FURTHER_RADIUS) or each
                 ends.append(self._continued(further, 0))
         return ends
 
@@ -384,7 +353,7 @@ class Search:
                 break
             share, nearly = (1.0, *SHORTER)[max(0, tried - CONTINUATIONS + 1)], tried >= CONTINUATIONS
             radius = share * FURTHER_RADIUS
-            found = self._descended(found.half_spaces, STEPS, radius, held=held, steady=nearly) or found
+            found = self._further(found, STEPS, radius, held=held, steady=nearly) or found
         return self._settled(found, held)
 
     def _grown(self, few: Candidate) -> Candidate | None:
@@ -403,22 +372,18 @@ class Search:
         begun = self._with_facets(begun)
         if size == self._n_facets:
             # the free descent may lose facets that cannot be put back
-            even = self._descended(begun.half_spaces, steps, FURTHER_RADIUS, steady=True)
+            even = self._further(begun, steps, FURTHER_RADIUS, steady=True)
             self._found += [begun] if even is None else [begun, even]
-        found = self._settled(self._descended(begun.half_spaces, steps, FURTHER_RADIUS) or begun)
+        found = self._settled(self._further(begun, steps, FURTHER_RADIUS) or begun)
         return begun if begun.rank(0) < found.rank(0) else found
 
     def _settled(self, found: Candidate, held: int = 0) -> Candidate:
-        """Half-spaces without a facet become cuts as long as the loss falls by them."""
-        for _ in range(ROUNDS):
-            if found.n_facets == len(found.half_spaces.offsets):
-                break
-            cut = with_cuts(self._target, found.half_spaces)
-            further = self._descended(cut, FURTHER_STEPS, FURTHER_RADIUS, held=held)
-            if further is None or further.rank(0) >= found.rank(0):
-                break
-            found = further
-        return found
+        """Half-spaces without a facet become cuts, where the loss falls by them."""
+        if found.n_facets == len(found.half_spaces.offsets):
+            return found
+        cut = with_cuts(self._target, found.half_spaces)
+        further = self._descended(cut, FURTHER_STEPS, FURTHER_RADIUS, held=held, axes=found.axes)
+        return found if further is None else min(further, found, key=lambda each: each.rank(0))
 
     def _with_facets(self, found: Candidate) -> Candidate:
         """With all half-spaces bounding a facet, where that costs little of the loss.
@@ -433,7 +398,9 @@ class Search:
             if cuts == 0 or failures == len(trials):
                 break
             depth, passed = trials[failures]
-            cut = with_cuts(self._target, best.half_spaces, cuts, depth, best.axes, passed)
+            cut = with_cuts(
+                self._target, best.half_spaces, cuts, depth, best.axes[0] if len(best.axes) else None, passed
+            )
             more = self._descended(cut, CUT_STEPS, CUT_RADIUS, steady=True, restoring=True, axes=best.axes)
             worse = more is None or more.merit > most or (found.met and not more.met)
             if more is None or worse or more.n_facets <= best.n_facets:
@@ -442,6 +409,12 @@ class Search:
             else:
                 best, cuts, failures = more, size - more.n_facets, 0
         return best
+
+    def _further(
+        self, found: Candidate, steps: int, radius: float, held: int = 0, steady: bool = False
+    ) -> Candidate | None:
+        """From where another descent ended, with its boxes."""
+        return self._descended(found.half_spaces, steps, radius, held, steady, axes=found.axes)
 
     def _descended(
         self,
@@ -453,7 +426,7 @@ class Search:
         restoring: bool = False,
         axes: FloatArray | None = None,
     ) -> Candidate | None:
-        """Where a descent ends; `axes` are those of the box to begin with, if not the particle's."""
+        """Where a descent ends; `axes` are those of the boxes to begin with, where they are known."""
         planes = _planes_of(start)
         radius /= np.sqrt(len(start.offsets))
         sound, merit, worst, _ = self._descend(
@@ -462,14 +435,13 @@ class Search:
         if not sound:
             return None
         n_real = int(np.count_nonzero(measure_polyhedron(planes[0], planes[1]).areas >= MIN_FACET))
-        needs_box = bool((self._prices.low[2:] < self._prices.high[2:]).any())
-        box = self._memory[len(start.offsets)].scratch.start.copy() if needs_box else None
-        descriptors, residuals = self._target.descriptors, self._memory[len(start.offsets)].residuals
+        memory, descriptors = self._memory[len(start.offsets)], self._target.descriptors
+        residuals, boxes = memory.residuals, memory.frames[: memory.counts[FOLLOWED]].copy()
         volume = self._prices.wanted[0] * (1.0 + residuals[0])
         errors = dict(zip(TERMS, np.abs(residuals), strict=True))
         for key in ("volume", "convex_hull_volume"):  # of a convex polyhedron they are one
             errors[key] = abs(volume / descriptors[key] - 1.0)
-        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, errors, n_real, box)
+        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, errors, n_real, boxes)
 
     def _descend(
         self,
@@ -488,16 +460,16 @@ class Search:
             self._memory[size] = memory_for(size, len(self._rays.directions))
         memory = self._memory[size]
         # a copy: for an array that is locked numba would compile the descent once more
-        axes = np.array(self._target.box.axes if axes is None else axes)
         return descend(
             self._rays,
             prices,
-            axes,
+            np.array(self._target.box.axes),
             steps,
             min(radius, MAX_RADIUS),
             held,
             steady,
             restoring,
+            np.empty((0, 3, 3)) if axes is None else axes,
             normals,
             offsets,
             tangents,

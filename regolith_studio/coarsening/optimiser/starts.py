@@ -216,16 +216,8 @@ def fill_groups(
 ) -> None:
     """Spherical k-means of triangles, weighted by area, started as k-means++ (Arthur 2007).
 
-    Parameters
-    ----------
-    normals, areas, middles
-        Of the triangles, shapes (m, 3), (m,), (m, 3).
-    numbers
-        Uniform random numbers in [0, 1), shape (k,): one a group.
-    rounds
-        Of reassignment.
-    means, heights
-        Filled: mean normal of each group (k, 3), and the area-weighted mean of <n, x> over it (k,).
+    Normals (m, 3), areas (m,) and middles (m, 3) of the triangles; one random number in [0, 1) a group, (k,).
+    Filled are the mean normal of each group (k, 3), and the area-weighted mean of <n, x> over it (k,).
     """
     k, m = len(numbers), len(areas)
     distance, group, unit = np.full(m, 2.0), np.empty(m, np.int64), np.ones(k)

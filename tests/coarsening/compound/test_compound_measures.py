@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from regolith_studio.coarsening.core.line_overlap import fill_shared_with_lines
+from regolith_studio.coarsening.core.line_overlap import fill_shared_with_lines, scan_lines
 from regolith_studio.coarsening.core.parts import (
     N_EXPOSED,
     N_FACES,
@@ -14,7 +14,6 @@ from regolith_studio.coarsening.core.parts import (
     hull_for,
     parts_for,
 )
-from regolith_studio.coarsening.core.scan_lines import scan_lines
 from regolith_studio.coarsening.optimiser.body import (
     BODY_VOLUME,
     HULL,
@@ -26,13 +25,12 @@ from regolith_studio.coarsening.optimiser.body import (
     body_scratch,
     empty_body,
 )
-from regolith_studio.coarsening.optimiser.box_check import box_memory
 from regolith_studio.coarsening.optimiser.descent import (
     fill_overlap,
     fill_overlap_gradient,
     move,
 )
-from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
+from regolith_studio.coarsening.optimiser.followed_boxes import box_memory, check_boxes
 from regolith_studio.coarsening.optimiser.memory import memory_for
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh

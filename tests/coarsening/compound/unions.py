@@ -5,7 +5,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.core.parts import Parts, Planes, parts_for
-from regolith_studio.coarsening.core.plane_coordinates import tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import tangents_of
 from regolith_studio.coarsening.optimiser.body import Body, body_scratch, empty_body, fill_body
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere

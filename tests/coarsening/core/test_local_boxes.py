@@ -11,7 +11,7 @@ from regolith_studio.coarsening.core.box_contacts import (
     tie_to_release,
     walk_to_minimum,
 )
-from regolith_studio.coarsening.core.plane_coordinates import tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import tangents_of
 from regolith_studio.coarsening.optimiser.body import (
     N_BOXES,
     N_VERTICES,
@@ -22,8 +22,7 @@ from regolith_studio.coarsening.optimiser.body import (
     empty_body,
     fill_body,
 )
-from regolith_studio.coarsening.optimiser.box_check import box_memory
-from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
+from regolith_studio.coarsening.optimiser.followed_boxes import box_memory, check_boxes
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces

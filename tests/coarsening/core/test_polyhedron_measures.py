@@ -5,18 +5,20 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.core.intersection import FINE, UNBOUNDED, fill_vertices, workspace_for
-from regolith_studio.coarsening.core.plane_coordinates import (
-    fill_gradient,
-    fill_tilt_scales,
-    moved_planes,
-    tangents_of,
-)
 from regolith_studio.coarsening.core.polyhedron_measures import (
     add_surface_charges,
     add_volume_charges,
+    fill_gradient,
+    fill_moved,
+    fill_tilt_scales,
     measure_polyhedron,
+    polyhedron_of,
+    tangents_of,
 )
+from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from tests.filling import filled
 
 
@@ -111,9 +113,9 @@ def test_that_the_derivatives_are_those_of_finite_differences() -> None:
     ]
     gradients = [filled(fill_gradient, (each, tangents, scales), np.empty(60))[0] for each in charges]
     for _ in range(5):
-        step = 1e-6 * rng.normal(size=60)
+        step, planes = 1e-6 * rng.normal(size=60), (normals, pivots, offsets, tangents, scales)
         ahead, behind = (
-            volume_and_area(*moved_planes(normals, pivots, offsets, tangents, scales, way * step)[:2])
+            volume_and_area(*filled(fill_moved, (*planes, way * step), normals, offsets, tangents)[:2])
             for way in (1.0, -1.0)
         )
         for value, other, gradient in zip(ahead, behind, gradients, strict=True):
@@ -124,6 +126,23 @@ def test_that_tangents_stay_orthonormal_after_a_step() -> None:
     normals, offsets = random_planes(10, 1)
     step = np.random.default_rng(2).normal(size=30)
     pivots, tangents = normals * offsets[:, None], tangents_of(normals)
-    turned, _, carried = moved_planes(normals, pivots, offsets, tangents, np.full(10, 0.5), step)
+    planes = normals, pivots, offsets, tangents, np.full(10, 0.5), step
+    turned, _, carried, _ = filled(fill_moved, planes, normals, offsets, tangents)
     triads = np.concatenate([turned[:, None], carried], axis=1)
     assert np.allclose(triads @ triads.transpose(0, 2, 1), np.eye(3), atol=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_that_the_polyhedron_is_that_of_qhull(scale: float) -> None:
+    rng = np.random.default_rng(2)
+    half_spaces = HalfSpaces(rng.normal(size=(30, 3)), scale * rng.uniform(0.8, 1.6, 30))
+    mine, qhull = polyhedron_of(half_spaces), ConvexPolyhedron.from_half_spaces(half_spaces)
+    assert (mine.n_facets, mine.n_vertices) == (qhull.n_facets, qhull.n_vertices)
+    assert mine.volume == pytest.approx(qhull.volume, rel=1e-12)
+    assert mine.facet_areas == pytest.approx(qhull.facet_areas, rel=1e-9)
+    assert (mine.facet_areas > 0).all()
+
+
+def test_that_planes_on_one_side_bound_nothing() -> None:
+    with pytest.raises(GeometryError, match="unbounded"):
+        polyhedron_of(HalfSpaces(np.vstack([np.eye(3), [[0.1, 0.2, 0.97]]]), np.ones(4)))

@@ -1,9 +1,23 @@
-"""The inverse second derivative that the descent steps with: a first one, and its updates."""
+"""The quadratic model of a step: an inverse second derivative, and multipliers that the loss pays for.
+
+The price that the loss pays for each term bounds its multiplier. A step d from a point with gradient g,
+inverse second derivative M, residuals c and their rows R minimises
+
+    <g, d> + d M^-1 d / (2 t) + sum of rho_r(c_r + <R_r, d>),    rho_r(u) = max(low_r u, high_r u),
+
+whose dual is, with D = R M R' and q = R M g, the least of
+
+    t/2 l' D l + l' (t q - c),    low_r <= l_r <= high_r.
+
+A multiplier inside its bounds means that the term is met to first order, one at a bound that the price does
+not pay for it (an exact penalty; Fletcher 1987, section 14.3). t < 1 shortens the step.
+"""
 
 import numpy as np
 
+from regolith_studio.coarsening.core.line_overlap import ScanLines
+from regolith_studio.coarsening.core.overlap import RayTable
 from regolith_studio.coarsening.core.parts import Parts
-from regolith_studio.coarsening.core.scan_lines import ScanLines
 from regolith_studio.coarsening.optimiser.body import (
     BODY_VOLUME,
     FIRST_TIE,
@@ -13,7 +27,8 @@ from regolith_studio.coarsening.optimiser.body import (
     SURFACE,
     Body,
 )
-from regolith_studio.coarsening.optimiser.memory import Rays, Steps
+from regolith_studio.coarsening.optimiser.memory import Steps
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, cross, dot, mixed, row
 
@@ -28,7 +43,7 @@ the two surfaces count for them."""
 
 @kernel_noalloc
 def fill_first_metric(
-    body: Body, rays: Rays | ScanLines, price: float, held: int, steady: bool, work: Steps
+    body: Body, rays: RayTable | ScanLines, price: float, held: int, steady: bool, work: Steps
 ) -> None:
     """A first inverse second derivative, one block a half-space: large facets resist, held ones do not move.
 
@@ -53,7 +68,7 @@ def fill_first_metric(
 
 @kernel_noalloc
 def fill_curvature(
-    body: Body, parts: Parts | None, rays: Rays | ScanLines, floor: float, work: Steps
+    body: Body, parts: Parts | None, rays: RayTable | ScanLines, floor: float, work: Steps
 ) -> None:
     """Fill, for each half-space alone, the second derivative of the Jaccard distance: lines or rays know it.
 
@@ -160,3 +175,137 @@ def _add_row_changes(here: Body, there: Body, m: int, work: Steps) -> None:
         elif there.slack[b] != GONE and here.slack[b] != GONE:
             for j in range(size):
                 work.change[j] -= factor * (there.rival_rows[b, j] - here.rival_rows[b, j])
+
+
+SWEEPS = 6
+"""Of coordinate descent between two exact solutions for the multipliers inside their bounds."""
+ROUNDS = 40
+DEPENDENT = 1e-13
+"""Added to the diagonal, relative to it: terms may depend on each other, as AR on both edges."""
+
+
+@kernel_noalloc
+def fill_multipliers(
+    products: FloatArray,
+    slopes: FloatArray,
+    residuals: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    share: float,
+    factor: FloatArray,
+    multipliers: FloatArray,
+) -> None:
+    """Bring the multipliers (m,) of a step from those nearby, 0 for example, to their values.
+
+    They follow from D (m, m), q (m,), c (m,), their bounds low <= 0 <= high (both 0 where the loss has no
+    such term) and t, the share; `factor` (m, m + 1) is scratch.
+    """
+    for _ in range(ROUNDS):
+        for _ in range(SWEEPS):
+            if _sweep(products, slopes, residuals, low, high, share, multipliers) < 1e-12:
+                return
+        _solve_free(products, slopes, residuals, low, high, share, factor, multipliers)
+
+
+@kernel_noalloc
+def _sweep(
+    products: FloatArray,
+    slopes: FloatArray,
+    residuals: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    share: float,
+    multipliers: FloatArray,
+) -> float:
+    """One round of coordinate descent; the largest change."""
+    largest = 0.0
+    for r in range(len(residuals)):
+        diagonal = share * products[r, r]
+        if low[r] == high[r] or not diagonal > 0.0:
+            continue
+        slope = share * slopes[r] - residuals[r]
+        for s in range(len(residuals)):
+            slope += share * products[r, s] * multipliers[s]
+        value = min(high[r], max(low[r], multipliers[r] - slope / (diagonal * (1.0 + DEPENDENT))))
+        largest = max(largest, abs(value - multipliers[r]))
+        multipliers[r] = value
+    return largest
+
+
+@kernel_noalloc
+def _solve_free(
+    products: FloatArray,
+    slopes: FloatArray,
+    residuals: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    share: float,
+    factor: FloatArray,
+    multipliers: FloatArray,
+) -> None:
+    """Go from the multipliers towards those that are best for the ones inside their bounds, up to a bound.
+
+    They stay where the value of the dual would rise: rows that depend on each other may have no best ones.
+    """
+    m = len(residuals)
+    for r in range(m):
+        free = low[r] < multipliers[r] < high[r]
+        right = residuals[r] - share * slopes[r]
+        for s in range(m):
+            both = free and low[s] < multipliers[s] < high[s]
+            factor[r, s] = share * products[r, s] if both else (1.0 if r == s else 0.0)
+            if free and not both:
+                right -= share * products[r, s] * multipliers[s]
+        factor[r, m] = right if free else multipliers[r]
+    if not solve_in_place(factor):
+        return
+    part = 1.0
+    for r in range(m):
+        way = factor[r, m] - multipliers[r]
+        room = high[r] - multipliers[r] if way > 0.0 else low[r] - multipliers[r]
+        if abs(room) < part * abs(way):
+            part = room / way
+    rise = 0.0
+    for r in range(m):
+        way, pull = factor[r, m] - multipliers[r], share * slopes[r] - residuals[r]
+        for s in range(m):
+            there = multipliers[s] + 0.5 * part * (factor[s, m] - multipliers[s])
+            pull += share * products[r, s] * there
+        rise += way * pull
+    if rise < 0.0:
+        for r in range(m):
+            value = multipliers[r] + part * (factor[r, m] - multipliers[r])
+            multipliers[r] = min(high[r], max(low[r], value))
+
+
+@kernel_noalloc
+def solve_in_place(system: FloatArray) -> bool:
+    """Solve a symmetric positive semidefinite system (m, m + 1), the right-hand side last, by Cholesky.
+
+    The solution takes the place of the right-hand side. A pivot that vanishes to rounding is a row that
+    depends on those before it; its unknown becomes 0. False where the matrix is not positive semidefinite.
+    """
+    m = len(system)
+    for k in range(m):
+        pivot = system[k, k]
+        for i in range(k):
+            pivot -= system[k, i] * system[k, i]
+        if pivot < -1e-9 * abs(system[k, k]):
+            return False
+        depends = pivot <= DEPENDENT * 10.0 * system[k, k]
+        root = np.inf if depends else np.sqrt(pivot)
+        for j in range(k + 1, m):
+            value = system[j, k]
+            for i in range(k):
+                value -= system[j, i] * system[k, i]
+            system[j, k] = value / root
+        value = system[k, m]
+        for i in range(k):
+            value -= system[k, i] * system[i, m]
+        system[k, k], system[k, m] = root, value / root
+    for k in range(m - 1, -1, -1):
+        value = system[k, m]
+        for j in range(k + 1, m):
+            value -= system[j, k] * system[j, m]
+        system[k, m] = value / system[k, k]
+    return True
