@@ -163,11 +163,8 @@ def _facet_in_plane(solid: ConvexPolyhedron, target: Target, point: FloatArray) 
     foot = target.scale * (point @ target.axes)
     gap = np.linalg.norm(solid.half_spaces.points - foot, axis=1)
     nearest = int(gap.argmin())
-    return (
-        nearest
-        if gap[nearest] <= PLANE_TOLERANCE * target.scale + PLANE_TOLERANCE * float(np.linalg.norm(foot))
-        else None
-    )
+    limit = PLANE_TOLERANCE * (target.scale + float(np.linalg.norm(foot)))
+    return nearest if gap[nearest] <= limit else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -343,8 +343,7 @@ def coarsen_column(
     cells: list[dict[str, Any] | str] = []
     for row in rows:
         outcome = result_of(_outcome(particle, _with_loss(request, row), column, fit, Progress(0, 0)))
-        coarsened = outcome.coarsened
-        cell = outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened)
+        cell = _polyhedron_of(outcome)
         cells.append(cell if isinstance(cell, str) else cell.document())
     return {"rows": cells}
 
@@ -356,13 +355,13 @@ def _variants(rows: Sequence[LossVariant] | None, request: CoarseningRequest) ->
 
 def study_of_cells(cells: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]) -> GalleryStudy:
     """The result of :func:`coarsen_gallery` as a study that can be written."""
-    polyhedra: dict[tuple[int, int], GalleryPolyhedron | str] = {}
-    for each in cells:
-        coarsened = each.outcome.coarsened
-        polyhedra[each.row, each.column] = (
-            each.outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened)
-        )
+    polyhedra = {(each.row, each.column): _polyhedron_of(each.outcome) for each in cells}
     return GalleryStudy(tuple(labels), tuple(names), polyhedra)
+
+
+def _polyhedron_of(outcome: CoarsenedParticle) -> GalleryPolyhedron | str:
+    """What a gallery keeps of a particle, or why there is no polyhedron."""
+    return outcome.problem if outcome.coarsened is None else GalleryPolyhedron.of(outcome.coarsened)
 
 
 def _fit_of(particle: Particle, request: CoarseningRequest) -> HarmonicFit | str | None:

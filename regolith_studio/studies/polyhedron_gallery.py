@@ -1,7 +1,7 @@
 """Polyhedra of some particles for each loss, as data and as a table (Fig. 7)."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -35,15 +35,7 @@ class GalleryPolyhedron:
     @classmethod
     def of(cls, result: CoarseningResult) -> "GalleryPolyhedron":
         """Of a particle just coarsened."""
-        return cls(
-            result.method,
-            result.polyhedron,
-            result.errors,
-            result.jaccard_distance,
-            result.loss,
-            result.bounds,
-            result.reason,
-        )
+        return cls(*(getattr(result, each.name) for each in fields(cls)))
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "GalleryPolyhedron":

@@ -248,10 +248,7 @@ def demo_page(folder: Path, problems: Sequence[str]) -> str:
     """
     sections = (_scan, _fits, _polyhedra, _population, _dataset, _heap)
     parts = [f"<h1>{DEMO_TITLE}</h1>", _LEAD, *(section(folder) for section in sections)]
-    if problems:
-        items = "".join(f"<li>{escape(sentence)}</li>" for sentence in problems)
-        parts.append(f"<h2>What could not be done</h2><ul>{items}</ul>")
-    return html_page(DEMO_TITLE, parts)
+    return html_page(DEMO_TITLE, [*parts, _problems(problems)])
 
 
 _LEAD = (
