@@ -272,7 +272,8 @@ QCheckBox::indicator, QRadioButton::indicator {{ width: 1.05em; height: 1.05em; 
 QCheckBox::indicator:hover, QRadioButton::indicator:hover {{ border-color: palette(highlight); }}
 QRadioButton::indicator {{ border-radius: 0.55em; }}
 QRadioButton::indicator:checked {{ border-color: palette(highlight); background: qradialgradient(
-    cx: 0.5, cy: 0.5, radius: 0.5, stop: 0.5 palette(highlight), stop: 0.6 palette(base)); }}
+    cx: 0.5, cy: 0.5, fx: 0.5, fy: 0.5, radius: 0.5,
+    stop: 0.5 palette(highlight), stop: 0.6 palette(base)); }}
 QCheckBox::indicator:checked {{ background: palette(highlight); border-color: palette(highlight);
     image: url("{resource("icons", "tick.svg").as_posix()}"); }}
 QCheckBox::indicator:disabled, QRadioButton::indicator:disabled {{ border-color: palette(mid); }}

@@ -14,6 +14,8 @@ from PySide6.QtWidgets import (
     QLabel,
     QRadioButton,
     QSplitter,
+    QStyle,
+    QStyleOptionButton,
     QVBoxLayout,
     QWidget,
 )
@@ -274,6 +276,21 @@ def test_that_a_box_or_circle_to_check_stands_out_as_controls_must(app, shown, t
     seen = {image.pixelColor(x, y).getRgbF()[:3] for x in range(image.width()) for y in range(image.height())}
     ground = QColor(theme.window).getRgbF()[:3]
     assert max(contrast(colour, ground) for colour in seen) >= 3.0
+
+
+def test_that_the_dot_of_a_radio_button_is_in_the_middle_of_its_circle(app, shown):
+    window = QWidget()
+    button = QRadioButton(window)
+    button.setChecked(True)
+    QVBoxLayout(window).addWidget(button)
+    apply_theme(app, LIGHT, shown(window))
+    app.processEvents()
+    option = QStyleOptionButton()
+    button.initStyleOption(option)
+    middle = button.style().subElementRect(QStyle.SubElement.SE_RadioButtonIndicator, option, button).center()
+    image, colour = button.grab().toImage(), QColor(LIGHT.accent)
+    for x, y in ((0, 0), (2, 2), (-1, 2), (2, -1), (-1, -1)):
+        assert image.pixelColor(middle + QPoint(x, y)) == colour
 
 
 def test_that_a_combo_box_becomes_as_small_as_its_letters_again(shown):
