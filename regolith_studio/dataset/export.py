@@ -1,6 +1,7 @@
 """Export a dataset for another program: options, the interface of an exporter, and writing its folder."""
 
 import hashlib
+import math
 import os
 import shlex
 import subprocess
@@ -30,6 +31,7 @@ from regolith_studio.version import __version__
 FORMAT = "regolith-studio-export"
 RECORD, README = "export.json", "README.txt"
 PARTS = ("contact", "test", "times")
+MICROMETRE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,11 @@ class ExportOptions(ExportSettings):
     seed: int = 0
     rounding: float = setting(0.02, "Rounding", minimum=1e-6, maximum=0.5)
     n_spheres: int = setting(20, "Spheres per shape", minimum=1, maximum=500)
+
+    @property
+    def to_metres(self) -> float:
+        """Edge in metres of a cube with the volume of a particle of 1 um, coarse graining applied."""
+        return float(self.coarse_graining_factor * MICROMETRE * (math.pi / 6) ** (1 / 3))
 
     def replaced(self, **changes: Any) -> "ExportOptions":
         """A copy with other values; fields of `contact`, `test` and `times` by their own names.

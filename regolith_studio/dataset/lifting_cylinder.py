@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import ExportOptions
+from regolith_studio.dataset.export import MICROMETRE, ExportOptions
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dataset.size_distributions import SizeDistribution
 from regolith_studio.geometry.arrays import FloatArray
@@ -17,7 +17,6 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
-MICROMETRE = 1e-6
 FILL, PACKED = 1.375, 0.55
 """Fill height over diameter of the paper's cylinder (2.5 to 3 cm of 2 cm), and its solid fraction."""
 

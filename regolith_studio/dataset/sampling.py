@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import ExportOptions
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE, scaled_cylinder
+from regolith_studio.dataset.export import MICROMETRE, ExportOptions
+from regolith_studio.dataset.lifting_cylinder import scaled_cylinder
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray

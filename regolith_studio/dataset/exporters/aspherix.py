@@ -4,7 +4,6 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound
@@ -23,7 +22,6 @@ together so that their mean is the union's centre; the template's moment_of_iner
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files: dict[str, bytes] = {}
-    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     lines = [f"# particle templates, SI units, coarse-graining factor {options.coarse_graining_factor:g}"]
     weights = dataset.class_weights("volume")
     for key, one, weight in zip(shape_names(dataset), dataset.representatives, weights, strict=True):
@@ -32,7 +30,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
             files[f"meshes/{key}.stl"] = stl_bytes(one.shape.mesh.triangles, header)
         sizes = size_classes(one.sizes)
         for number, (diameter, mass) in enumerate(zip(sizes.diameters, sizes.mass, strict=True)):
-            scale, name = float(diameter * to_metres), f"{key}_{number:02d}"
+            scale, name = float(diameter * options.to_metres), f"{key}_{number:02d}"
             if isinstance(one.shape, ConvexCompound):
                 bodies, form = _bodies(one.shape, name, scale, options.contact.density)
                 lines += bodies

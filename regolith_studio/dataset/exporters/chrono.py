@@ -4,7 +4,6 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
@@ -23,7 +22,6 @@ The OBJ files are read back by an independent reader in this program's tests; Ch
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
     files = {}
-    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     records = []
     for index, (key, one) in enumerate(zip(keys, dataset.representatives, strict=True)):
         sizes = size_classes(one.sizes)
@@ -41,7 +39,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
                 "moments": one.shape.mesh.inertia.diagonal().tolist(),
                 "circumscribed_radius": float(np.linalg.norm(one.shape.vertices, axis=1).max()),
                 "weight_number": float(dataset.class_weights("number")[index]),
-                "scales_m": (sizes.diameters * to_metres).tolist(),
+                "scales_m": (sizes.diameters * options.to_metres).tolist(),
                 "scale_number_shares": sizes.number.tolist(),
             }
         )

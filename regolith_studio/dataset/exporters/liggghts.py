@@ -1,10 +1,7 @@
 """LIGGGHTS-PUBLIC: multi-sphere templates with mass and inertia of the polyhedra, and their distribution."""
 
-import numpy as np
-
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.messages import N_
@@ -27,7 +24,6 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files, fits = {}, []
     templates: list[tuple[str, float]] = []
     lines = [f"# multi-sphere templates, SI units, coarse-graining factor {options.coarse_graining_factor:g}"]
-    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     by_mass = dataset.class_weights("volume")
     for key, one, weight in zip(shape_names(dataset), dataset.representatives, by_mass, strict=True):
         spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
@@ -37,7 +33,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         moments = one.shape.mesh.inertia.diagonal()
         sizes = size_classes(one.sizes)
         for number, (diameter, share) in enumerate(zip(sizes.diameters, sizes.mass, strict=True)):
-            scale = float(diameter * to_metres)
+            scale = float(diameter * options.to_metres)
             fix = f"pts_{key}_{number:02d}"
             templates.append((fix, float(weight * share)))
             lines.append(

@@ -4,7 +4,6 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.multisphere import bare_areas, fit_spheres_by, sphere_fit_errors
 from regolith_studio.dataset.sampling import PackedParticles, pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
@@ -108,8 +107,7 @@ def _keywords(
     options: ExportOptions,
 ) -> str:
     contact, phases = options.contact, range(1, len(bounds) + 1)
-    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
-    medians = [one.sizes.quantile(0.5) * to_metres for one in dataset.representatives]
+    medians = [one.sizes.quantile(0.5) * options.to_metres for one in dataset.representatives]
     reach = float((bounds[particles.class_index] * particles.scale).max())
     low, high = particles.position.min(axis=0) - reach, particles.position.max(axis=0) + reach
     pairs = len(bounds) * (len(bounds) + 1) // 2

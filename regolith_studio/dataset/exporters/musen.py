@@ -7,7 +7,6 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
@@ -26,10 +25,9 @@ MULTISPHERE = 1
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     shapes, fits = b"", []
-    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
-        scale = float(one.sizes.quantile(0.5)) * to_metres
+        scale = float(one.sizes.quantile(0.5)) * options.to_metres
         shapes += _message(1, _multisphere(key, spheres * scale, one.shape.volume * scale**3))
         summed = float(4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() / one.shape.volume)
         fits.append(

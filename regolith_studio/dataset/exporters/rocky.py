@@ -4,6 +4,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import (
+    MICROMETRE,
     NOTES,
     Exporter,
     ExportOptions,
@@ -11,7 +12,7 @@ from regolith_studio.dataset.export import (
     shape_names,
     sizes_csv,
 )
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE, box_mesh, particle_count, tube_mesh
+from regolith_studio.dataset.lifting_cylinder import box_mesh, particle_count, tube_mesh
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.io.own_files import canonical_json

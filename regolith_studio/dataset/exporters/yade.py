@@ -6,6 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import (
+    MICROMETRE,
     NOTES,
     Exporter,
     ExportOptions,
@@ -13,7 +14,6 @@ from regolith_studio.dataset.export import (
     shape_names,
     sizes_csv,
 )
-from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.sampling import PackedParticles, fitted_cylinder, pack_on_lattice, sample_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
