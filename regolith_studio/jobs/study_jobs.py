@@ -29,7 +29,7 @@ from regolith_studio.jobs.executor import Executor, call, open_executor, value_o
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.steps import as_events, result_of
-from regolith_studio.studies import StudyProgress
+from regolith_studio.studies import Mapper, StudyProgress
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants
@@ -38,8 +38,6 @@ from regolith_studio.studies.population import population_study
 
 MAX_NUMBERS = 4096
 """Largest array that is kept; larger ones, and answers of other kinds, are computed again."""
-
-Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 
 
 class StudyCheckpoint:

@@ -1,6 +1,11 @@
 """Studies of whole samples: what a chosen l_max and a chosen loss do to the descriptors."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
+
+Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+"""Anything that maps a picklable function in order: ``map``, or the ordered lazy map of a process pool."""
 
 
 @dataclass(frozen=True)

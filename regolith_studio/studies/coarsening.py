@@ -1,6 +1,6 @@
 """What a choice of loss weights means for the descriptors of coarsened particles (section 3.2, Fig. 8)."""
 
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
@@ -29,16 +29,13 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.studies import StudyProgress
+from regolith_studio.studies import Mapper, StudyProgress
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants
 
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""
 MIN_PLOTTED = 1e-3
 """Errors below this percentage are drawn as this."""
-
-Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
-"""Anything that maps a picklable function in order: ``map``, or the ordered map of a process pool."""
 
 
 @dataclass(frozen=True)

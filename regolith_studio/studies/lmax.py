@@ -1,6 +1,6 @@
 """What a chosen l_max means for the descriptors of a sample (section 3.1, Eq. 10, Fig. 3)."""
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import groupby
@@ -25,7 +25,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.synthesis import LEVEL_BY_DEGREE, gallery
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.studies import StudyProgress
+from regolith_studio.studies import Mapper, StudyProgress
 
 DEFAULT_DEGREES = tuple(range(1, 21))
 BOX_NOTE = (
@@ -39,9 +39,6 @@ within 3 % and ends at -0.1 %. The two agglutinates alone make D_min's RMSRE ris
 EXTRAPOLATED = ("surface_area", "sphericity", "convex_hull_volume", "convexity")
 """Descriptors that near those of the smooth surface with the square of the edge length: their values on
 meshes of two levels are extrapolated. Sides of boxes are not: they jump where two boxes are nearly tied."""
-
-Mapper = Callable[[Callable[[Mesh], "FloatArray | str"], Iterable[Mesh]], Iterable["FloatArray | str"]]
-"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool."""
 
 
 @dataclass(frozen=True, eq=False)

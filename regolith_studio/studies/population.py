@@ -21,7 +21,7 @@ from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.studies import StudyProgress
+from regolith_studio.studies import Mapper, StudyProgress
 from regolith_studio.studies.population_distances import (
     Intervals,
     PopulationDistances,
@@ -43,10 +43,6 @@ N_NOVEL = 100
 NOVEL_BATCH = 10
 FRAME_BATCH = 100
 """Particles that one process turns into the frame of their axes at a time."""
-
-Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
-"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool. It may yield
-``None`` while a result is waited for, so that the study can be stopped."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,7 +236,7 @@ def population_study(
     - ``n_draws``: by default as many as the held-out half has, so that the noise is that of the floor; at
       most 1,000.
     - ``settings``: settings by model key; by default those of :func:`default_settings`.
-    - ``mapper``: ``map``, or the ordered lazy map of a process pool.
+    - ``mapper``: may yield ``None`` while a result is waited for, so that the study can be stopped.
 
     Raises InputError if a model, descriptor or the degree is unknown, there are fewer than 20 particles or
     draws.
