@@ -130,23 +130,21 @@ def test_that_an_option_out_of_range_is_bad_use_and_writes_nothing(
     assert not (tmp_path / "c").exists()
 
 
-def test_that_a_single_weight_is_the_only_one_and_beside_a_preset_changes_it(
+def test_that_a_weight_is_the_only_one_or_beside_a_preset_changes_it_and_zero_leaves_the_usual_ones(
     command, grains: Path, tmp_path: Path
 ) -> None:
     common = ("coarsen", grains / "grain-b.stl", "--method", "quadric", "-o", tmp_path, "--json")
-    alone = command(*common, "--weight", "volume=2").json["order"]["weights"]
-    beside = command(*common, "--preset", "all", "--weight", "volume=2").json["order"]["weights"]
+    alone, beside, without = (
+        command(*common, *options).json["order"]["weights"]
+        for options in (
+            ("--weight", "volume=2"),
+            ("--preset", "all", "--weight", "volume=2"),
+            ("--weight", "sphericity=0"),
+        )
+    )
     assert {key: value for key, value in alone.items() if value} == {"volume": 2.0}
-    assert beside["volume"] == 2.0
-    assert beside["sphericity"] == 1.0
-
-
-def test_that_a_weight_of_zero_alone_is_taken_out_of_the_usual_ones(
-    command, grains: Path, tmp_path: Path
-) -> None:
-    common = ("coarsen", grains / "grain-b.stl", "--method", "quadric", "-o", tmp_path, "--json")
-    weights = command(*common, "--weight", "sphericity=0").json["order"]["weights"]
-    assert {key for key, value in weights.items() if not value} == {"sphericity"}
+    assert (beside["volume"], beside["sphericity"]) == (2.0, 1.0)
+    assert {key for key, value in without.items() if not value} == {"sphericity"}
 
 
 def test_that_only_the_terms_named_are_kept_exactly(command, grains: Path, tmp_path: Path) -> None:

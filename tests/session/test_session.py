@@ -70,12 +70,6 @@ def test_that_opening_selects_the_first_particle_and_computes_everything(opened:
     assert opened.tasks == ()
 
 
-def test_that_the_fit_of_an_ellipsoid_keeps_its_volume(opened: Session) -> None:
-    assert opened.selected is not None
-    assert opened.results.surface is not None
-    assert opened.results.surface.volume == pytest.approx(opened.selected.particle.mesh.volume, rel=0.01)
-
-
 def test_that_every_row_gets_health_and_descriptors(opened: Session) -> None:
     for entry in opened.particles:
         assert entry.health is not None
