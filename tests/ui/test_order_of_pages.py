@@ -45,13 +45,12 @@ def test_that_choices_are_at_the_right_of_every_page_and_above_their_button(wind
         if key in BUTTONS:
             button, setting = (page.findChild(QWidget, name) for name in BUTTONS[key])
             assert place(button, page).y() > place(setting, page).y(), key
-
-
-def test_that_thumbnails_of_representatives_have_their_room_on_a_small_screen(window, app):
-    page = window.go("dataset")
+        if key == "dataset":  # the thumbnails have their room
+            assert page.gallery.list.iconSize().width() >= 120
+            assert page.gallery.height() >= CELL.height()
+    page = window.go("studies")
     app.processEvents()
-    assert page.gallery.list.iconSize().width() >= 120
-    assert page.gallery.height() >= CELL.height()
+    assert page.findChild(QPushButton, "coarsening_study_result_button").isVisible()
 
 
 def test_that_no_line_of_a_formula_is_lower_than_twenty_pixels_however_narrow(shown, wait):
@@ -68,9 +67,3 @@ def test_that_no_line_of_a_formula_is_lower_than_twenty_pixels_however_narrow(sh
     (few, low), (many, high) = heights
     assert few == 1 < many
     assert high >= many * MIN_LINE_HEIGHT > low
-
-
-def test_that_the_answer_of_studies_can_be_computed_beside_its_choices(window, app):
-    page = window.go("studies")
-    app.processEvents()
-    assert page.findChild(QPushButton, "coarsening_study_result_button").isVisible()

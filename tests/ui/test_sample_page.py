@@ -107,14 +107,6 @@ def test_that_keys_sort_the_table_and_show_the_distribution_of_its_column(page):
     assert page.statistics.choices()["key"] == "volume"
 
 
-@pytest.mark.slow
-def test_that_columns_sort_by_number(page):
-    column = [each.key for each in page.table.particles.columns].index("volume")
-    page.table.sortByColumn(column, Qt.SortOrder.AscendingOrder)
-    volumes = [entry.descriptors["volume"] for entry in page.table.particles.rows]
-    assert volumes == sorted(volumes)
-
-
 def test_that_the_exported_table_has_the_rows_that_are_seen_with_units(page, tmp_path, monkeypatch):
     target = tmp_path / "particles.csv"
     monkeypatch.setattr(

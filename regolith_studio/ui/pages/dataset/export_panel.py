@@ -63,6 +63,8 @@ class ExportPanel(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
+        self._reason, self._compounds = "", False
+        self._fill: Callable[[ExportOptions], CylinderFilling] | None = None
         self.setObjectName("dataset_targets")
         self.boxes = {key: self._box(key) for key in EXPORTERS}
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
@@ -92,7 +94,6 @@ class ExportPanel(QWidget):
         self.preview.setObjectName("dataset_preview")
         self.enlarge = named(QPushButton(), "dataset_enlarge")
         self.enlarge.hide()
-        self._fill: Callable[[ExportOptions], CylinderFilling] | None = None
         vbox(self.preview, self.enlarge, self.lossy, self.export, parent=self.foot, margins=(4, 6, 12, 10))
         self.coarse_graining.setValue(1)
         self.particles.setValue(200)
@@ -104,7 +105,6 @@ class ExportPanel(QWidget):
         self.export.clicked.connect(self.exportRequested)
         self.enlarge.clicked.connect(self._take_sufficient_factor)
         self.optionsChanged.connect(self._show_preview)
-        self._reason, self._compounds = "", False
         self.setValue({"targets": FIRST})
 
     def show_filling(self, fill: Callable[[ExportOptions], CylinderFilling] | None) -> None:
@@ -225,7 +225,7 @@ class ExportPanel(QWidget):
     def _show(self) -> None:
         altering = [key for key in self.chosen() if EXPORTERS[key].alters]
         self.lossy.setEnabled(bool(altering))
-        problem = getattr(self, "_reason", "")
+        problem = self._reason
         if not problem and (refusing := self.refusing()):
             problem = tr(
                 "{label} cannot hold the compounds of this dataset: {why}",
@@ -236,14 +236,12 @@ class ExportPanel(QWidget):
             problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
         self.export.setEnabled(not problem)
         self.export.setToolTip(inert(problem))
-        if hasattr(self, "_fill"):
-            self._show_preview()
+        self._show_preview()
         self.chosenChanged.emit()
 
     def refusing(self) -> list[str]:
         """Keys of the selected formats that cannot hold the dataset's compounds."""
-        compounds = getattr(self, "_compounds", False)
-        return [key for key in self.chosen() if compounds and EXPORTERS[key].convex_only]
+        return [key for key in self.chosen() if self._compounds and EXPORTERS[key].convex_only]
 
 
 def groups() -> dict[str, list[str]]:
