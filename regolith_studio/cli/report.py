@@ -21,7 +21,7 @@ from regolith_studio.cli.options import (
 )
 from regolith_studio.cli.terminal import print_errors, print_result, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
-from regolith_studio.session.report.settings import ReportSettings
+from regolith_studio.session.report.settings import PAGE, ReportSettings
 
 if TYPE_CHECKING:
     from regolith_studio.readers.particles import LoadedParticles
@@ -106,7 +106,7 @@ def report(
 
     What cannot be made says so in its place.
     """
-    from regolith_studio.session.report.write import PAGE, write_report
+    from regolith_studio.session.report.write import write_report
 
     loaded = _load(sample, reading, jobs)
     done: WrittenReport = run_with_progress(

@@ -289,7 +289,7 @@
     </message>
     <message>
         <source>1 grain from 1 connected body</source>
-        <translation>1 Korn aus 1 zusammenhängendem Körper</translation>
+        <translation>1 Korn aus 1 zusammenhängenden Körper</translation>
     </message>
     <message>
         <source>1 grain from {bodies} connected bodies</source>
@@ -8909,7 +8909,7 @@
     </message>
     <message>
         <source>{grains} grains from 1 connected body</source>
-        <translation>{grains} Körner aus 1 zusammenhängendem Körper</translation>
+        <translation>{grains} Körner aus 1 zusammenhängenden Körper</translation>
     </message>
     <message>
         <source>{grains} grains from {bodies} connected bodies</source>

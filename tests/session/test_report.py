@@ -37,11 +37,10 @@ from regolith_studio.session.report.sections import (
     error_table,
     interval_text,
 )
-from regolith_studio.session.report.settings import ReportSettings
+from regolith_studio.session.report.settings import PAGE, ReportSettings
 from regolith_studio.session.report.write import (
     DOCUMENT,
     MAX_TRIANGLES,
-    PAGE,
     PDF,
     WrittenReport,
     report_page,

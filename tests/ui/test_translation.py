@@ -115,7 +115,7 @@ def test_that_a_filter_takes_the_words_that_are_read_and_the_english_ones(speaki
 
 @pytest.mark.parametrize("grains", [1, 60])
 @pytest.mark.parametrize("bodies", [1, 3])
-def test_that_what_was_found_in_a_scan_is_told_anew(grains, bodies, speaking):
+def test_that_the_result_of_a_search_for_grains_is_in_the_language_chosen_later(grains, bodies, speaking):
     speaking("de")
     volume = Volume(np.ones((2, 2, 2), dtype=np.int32), (1.0,) * 3, "labels", "a")
     seen = Histogram(np.array([8]), np.array([0.0, 1.0]))

@@ -1,4 +1,7 @@
-"""What a report shows, and of how many particles."""
+"""What a report shows, of how many particles, and what a dialog needs to know of it.
+
+The window imports this when it starts, and the makers of the sections only when a report is made.
+"""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -8,6 +11,21 @@ from regolith_studio.settings import check_settings, setting
 
 if TYPE_CHECKING:  # the command line makes its options of these fields, and must not wait for numerics
     from regolith_studio.session.choices import Choices
+
+
+PAGE = "report.html"
+
+
+@dataclass(frozen=True)
+class SectionBegun:
+    """Emitted before a section is made.
+
+    ``number``, ``total``: of the sections, from 1.
+    """
+
+    number: int
+    total: int
+    title: str
 
 
 @dataclass(frozen=True)

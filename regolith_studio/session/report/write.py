@@ -32,7 +32,7 @@ from regolith_studio.session.report.heap_sections import (
     simulate_heap,
 )
 from regolith_studio.session.report.sections import TITLE, ReportDraft, ReportSection, SectionSteps
-from regolith_studio.session.report.settings import ReportSettings
+from regolith_studio.session.report.settings import PAGE, ReportSettings, SectionBegun
 from regolith_studio.session.report.shape_sections import (
     compare_degrees,
     compare_population,
@@ -107,7 +107,7 @@ def _base64(content: bytes) -> str:
     return base64.b64encode(content).decode("ascii")
 
 
-PAGE, PDF, DOCUMENT = "report.html", "report.pdf", "report.json"
+PDF, DOCUMENT = "report.pdf", "report.json"
 PARTS: Mapping[str, Callable[[ReportDraft, str], SectionSteps]] = {
     N_("The sample"): describe_sample,
     N_("Fig. 2: a particle and its spherical harmonics"): draw_degrees,
@@ -134,18 +134,6 @@ class WrittenReport:
     folder: Path
     files: tuple[str, ...]
     problems: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class SectionBegun:
-    """Emitted before a section is made.
-
-    ``number``, ``total``: of the sections, from 1.
-    """
-
-    number: int
-    total: int
-    title: str
 
 
 def write_report(

@@ -32,8 +32,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import Outputs
-from regolith_studio.session.report.settings import ReportSettings
-from regolith_studio.session.report.write import PAGE, SectionBegun
+from regolith_studio.session.report.settings import PAGE, ReportSettings, SectionBegun
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import STRETCH, GrowingDialog, hbox, named, vbox
