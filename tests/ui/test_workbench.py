@@ -357,10 +357,12 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
 
 @pytest.mark.slow
 def test_that_opened_particles_are_reached_by_the_arrows_at_once(window, wait):
-    window.page.loss.sliders["min_diameter"].slider.setFocus()
-    window.session.adopt([entry.particle for entry in window.session.particles[:2]])
-    table = window.page.particles.table
-    wait(lambda: window.focusWidget() is table, SECONDS)
+    table, particles = window.page.particles.table, window.session.particles
+    before = window.page.loss.sliders["min_diameter"].slider, window.pages.buttons["explore"]
+    for count, part in enumerate(before, start=1):
+        part.setFocus()
+        window.session.adopt([entry.particle for entry in particles[:count]])
+        wait(lambda: window.focusWidget() is table, SECONDS)
     assert window.session.choices.weights["min_diameter"] == 1.0
 
 

@@ -489,7 +489,7 @@ class ExplorePage(PageWidget):
         ids = [entry.id for entry in entries]
         opened, self._listed = ids != self._listed, ids
         self.particles.set_entries(entries)
-        if opened and ids and focus is not None and self.isAncestorOf(focus):
+        if opened and ids and focus is not None and self.isVisible():
             self.particles.table.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def _set_section(self, shown: bool) -> None:
