@@ -1316,6 +1316,10 @@
         <translation>Berechnen Sie zuerst eine Studie.</translation>
     </message>
     <message>
+        <source>Compute this s&amp;tudy</source>
+        <translation>Diese S&amp;tudie berechnen</translation>
+    </message>
+    <message>
         <source>Concave flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.</source>
         <translation>Konkave Flanken: {top} Grad oben, {toe} Grad am Fuß; kein einheitlicher Winkel.</translation>
     </message>

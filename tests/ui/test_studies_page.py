@@ -43,7 +43,8 @@ def window(window, wait):
 
 def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     page = window.go("studies")
-    page.gallery.card.button.click()
+    page.tabs.setCurrentWidget(page.gallery)
+    window.menus.by_name["studies.run_shown"].trigger()
     wait(lambda: len(page.gallery.value()) == 2 * len(paper_variants()) and not window.session.tasks, SECONDS)
     table = page.gallery.table
     assert (table.rowCount(), table.columnCount()) == (1 + len(paper_variants()), 2)

@@ -11,6 +11,7 @@ PAGE = Page(
     tip=N_("Errors against l_max, facets and weights, and the polyhedra"),
     make="regolith_studio.ui.pages.studies.page:StudiesPage",
     actions=(
+        ActionSpec("run_shown", N_("Compute this s&tudy"), shortcut="F5", tip=N_("That of the open tab")),
         ActionSpec(
             "run_all",
             N_("&Compute all"),

@@ -354,7 +354,7 @@ class StudiesPage(PageWidget):
         bindings.refresh("choices", self._mark_gallery, slow=True)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
-        return {"run_all": self.run_all, "save": self.save}
+        return {"run_shown": self.run_shown, "run_all": self.run_all, "save": self.save}
 
     def settings(self) -> dict[str, Any]:
         return {
@@ -392,6 +392,14 @@ class StudiesPage(PageWidget):
         for key, text in values.items() if isinstance(values, dict) else ():
             if key in self.variations and isinstance(text, str):
                 self.variations[key].values.setValue(text)
+
+    def run_shown(self) -> None:
+        """Start the study of the open tab, unless it is running."""
+        card = self._panels[self.tabs.currentIndex()].card
+        if not self._session.particles:
+            self._context.toast.problem(tr(NO_PARTICLE))
+        elif card.record.state is not ResultState.RUNNING:
+            card.startRequested.emit()
 
     def run_all(self) -> None:
         """Start all studies that the choices allow, and the gallery."""
