@@ -5988,6 +5988,10 @@
         <translation>Das sind alle {count:,} Bytes der Datei.</translation>
     </message>
     <message>
+        <source>That of the open tab</source>
+        <translation>Die des offenen Reiters</translation>
+    </message>
+    <message>
         <source>The angle is measured when the drum has turned.</source>
         <translation>Der Winkel wird gemessen, wenn sich die Trommel gedreht hat.</translation>
     </message>
@@ -9192,8 +9196,8 @@
         <translation>{value:+.3g} Prozentpunkte ({low:+.3g} bis {high:+.3g})</translation>
     </message>
     <message>
-        <source>{value} across the cylinder (≥ {limit})</source>
-        <translation>{value} quer im Zylinder (≥ {limit})</translation>
+        <source>{value} across the diameter (≥ {limit})</source>
+        <translation>{value} auf den Durchmesser (≥ {limit})</translation>
     </message>
     <message>
         <source>{value} particles (≥ {limit})</source>

@@ -175,6 +175,7 @@ def test_that_the_lights_say_how_far_a_case_is_from_what_is_recommended(page, da
     assert [scale.sufficient_number(place) for place in range(3)] == [7700, 1000, 780_000]
     page.limits.show_scale(scale, lambda count: 0.6 * count)
     assert [page.limits._level(place) for place in range(3)] == [2, 2, 2]
+    assert page.limits.texts[0].text() == "6.8 across the diameter (≥ 20)", "of a drum as of a cylinder"
     assert [each.text() for each in page.limits.buttons[:2]] == [
         "Run with 7,700: 77 min",
         "Run with 1,000: 10 min",

@@ -51,7 +51,7 @@ RELIABLE_ACROSS = 20.0
 TOLERANCE = 2.0
 """Factor from the recommended value within which a value is doubtful, and beyond which it is bad."""
 ROWS = (
-    (N_("{value} across the cylinder (≥ {limit})"), ".1f", RELIABLE_ACROSS, False),
+    (N_("{value} across the diameter (≥ {limit})"), ".1f", RELIABLE_ACROSS, False),
     (N_("{value} particles (≥ {limit})"), ",", float(RELIABLE_N), False),
     (
         N_("{value} × particle size (paper: {limit})"),
