@@ -165,7 +165,7 @@ def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(p
     page.targets.boxes["lammps"].setChecked(False)
     assert "overlapping spheres" in page.targets.export.toolTip()
     page.targets.setValue({"targets": ["mujoco", "hoomd"]})
-    assert page.gallery.shown[0].caption.endswith("\n2 parts, 12 facets")
+    assert page.gallery.shown[0].caption.endswith("%, 2 parts, 12 facets\n" + dataset.representatives[0].name)
     convex = build_dataset([entry(1)], name="convex")
     page._take_dataset(write_dataset(tmp_path / "other", convex), convex)
     assert page.targets.export.isEnabled()

@@ -275,7 +275,7 @@ def shapes(dataset: Dataset) -> list[GalleryItem]:
             if parts > 1
             else tr("{count} facets", count=solid.n_facets)
         )
-        words = localized(f"{100 * weight:.1f} %\n") + facets
+        words = f"{localized(f'{100 * weight:.1f} %')}, {facets}\n{one.name}"
         shown.append((float(weight), GalleryItem(solid.mesh, words, tip, coarsened=True)))
     return _by_share(shown)
 
