@@ -205,8 +205,8 @@ class Commands(QObject):
         self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
         self.openers: dict[FileKind, Callable[[Path], object]] = {FileKind.RECIPE: self._open_recipe}
         self._models: Path | None = None
-        self._before: Recipe | None = None
-        self._after: Recipe | None = None
+        self._before: list[Recipe] = []
+        self._after: list[Recipe] = []
         session.events.left_out.connect(toast.notes)
 
     def open(self) -> None:
@@ -339,10 +339,8 @@ class Commands(QObject):
         match self.next_step("undo"):
             case "explore":
                 self._step(self._session.undo)
-            case "opening" if self._before is not None:
-                before, self._before = self._before, None
-                self._after = self._to_reopen(self._session.particles)
-                self._reopen(before)
+            case "opening":
+                self._exchange(self._before, self._after)
             case _:
                 self.page_steps.undo()
 
@@ -351,10 +349,8 @@ class Commands(QObject):
         match self.next_step("redo"):
             case "explore":
                 self._step(self._session.redo)
-            case "opening" if self._after is not None:
-                after, self._after = self._after, None
-                self._before = self._to_reopen(self._session.particles)
-                self._reopen(after)
+            case "opening":
+                self._exchange(self._after, self._before)
             case _:
                 self.page_steps.redo()
 
@@ -368,11 +364,11 @@ class Commands(QObject):
         """Page that ``undo`` or ``redo`` would act on, or :data:`OPENING`; empty where there is nothing."""
         session, steps = self._session, self.page_steps
         if name == "undo":
-            newest, possible, opening = steps.undo_page(), session.can_undo, self._before is not None
+            newest, possible, opening = steps.undo_page(), session.can_undo, bool(self._before)
             oldest = steps.undo_page(older=True)
         else:
             newest, possible = steps.redo_page(), session.can_redo
-            opening = self._after is not None and not session.can_undo
+            opening = bool(self._after) and not session.can_undo
             oldest = steps.redo_page(newer=True)
         return newest or ("explore" if possible else OPENING if opening else oldest)
 
@@ -388,7 +384,19 @@ class Commands(QObject):
     def _remember_open(self) -> None:
         """Keep how to reopen the particles that are about to be closed."""
         if self._session.particles:
-            self._before, self._after = self._to_reopen(self._session.particles), None
+            self._push_open(self._before)
+            self._after.clear()
+
+    def _push_open(self, openings: list[Recipe]) -> None:
+        """Add how to reopen what is open; where that is not possible, nothing beyond it can be reached."""
+        recipe = self._to_reopen(self._session.particles)
+        openings[:] = [*openings, recipe] if recipe is not None else []
+
+    def _exchange(self, openings: list[Recipe], others: list[Recipe]) -> None:
+        """Reopen the last of `openings`; what is open now goes to the others."""
+        recipe = openings.pop()
+        self._push_open(others)
+        self._reopen(recipe)
 
     def _to_reopen(self, entries: Sequence[ParticleEntry]) -> Recipe | None:
         """How to reopen these particles; ``None`` where some came neither from a file nor from a model."""

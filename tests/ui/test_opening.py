@@ -209,6 +209,19 @@ def test_that_an_undone_opening_is_redone_until_something_else_changes(opening, 
     assert (names(session), session.choices.l_max) == (["one"], 5)
 
 
+def test_that_several_openings_are_undone_and_redone_in_turn(opening, tmp_path):
+    commands, session, _ = opening
+    for name in ("two", "three"):
+        press("opening_replace")
+        commands.open_paths([write_ball(tmp_path / "b" / f"{name}.stl", 30.0)], "um")
+    seen = []
+    for step in (commands.undo, commands.undo, commands.redo, commands.redo):
+        step()
+        seen += names(session)
+    assert seen == ["two", "one", "two", "three"]
+    assert not commands.next_step("redo")
+
+
 def test_that_particles_of_a_page_ask_before_they_replace_those_of_a_file_and_can_be_undone(opening):
     commands, session, _ = opening
     origin = SampleSource()  # any source but a file
