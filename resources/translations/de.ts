@@ -376,10 +376,6 @@
         <translation>; {count} Facetten waren verlangt</translation>
     </message>
     <message>
-        <source>; {share:.2g} % of the volume left out</source>
-        <translation>; {share:.2g} % des Volumens weggelassen</translation>
-    </message>
-    <message>
         <source>&lt;b&gt;Not for compounds:&lt;/b&gt; {why}</source>
         <translation>&lt;b&gt;Nicht für Verbünde:&lt;/b&gt; {why}</translation>
     </message>
@@ -9146,6 +9142,10 @@
     <message>
         <source>{share:.0%} interval</source>
         <translation>{share:.0%}-Intervall</translation>
+    </message>
+    <message>
+        <source>{share:.2g} % of the volume left out</source>
+        <translation>{share:.2g} % des Volumens weggelassen</translation>
     </message>
     <message>
         <source>{share} % of the contacts are deeper than {depth} % of the mean diameter.</source>

@@ -261,8 +261,8 @@ class ThreeViews(QSplitter):
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
             rich(entry.id),
-            tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces))
-            + _left_out_text(entry.particle),
+            _left_out_text(entry.particle)
+            + tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces)),
         )
         self.link.frame(mesh.vertices)
 
@@ -470,10 +470,12 @@ def _lengths(bounds: FloatArray) -> str:
 
 
 def _left_out_text(particle: Particle) -> str:
-    """A few words where bodies of the file were left out of the particle."""
+    """A few words where bodies of a file were left out; they come first, as a narrow view cuts the end."""
     if particle.repair is None or not particle.repair.dropped_bodies:
         return ""
-    return tr("; {share:.2g} % of the volume left out", share=100 * (1 - particle.repair.kept_volume_share))
+    return (
+        tr("{share:.2g} % of the volume left out", share=100 * (1 - particle.repair.kept_volume_share)) + "; "
+    )
 
 
 def _missing_facets_text(results: Results) -> str:
