@@ -65,11 +65,12 @@ class Preferences(BaseModel):
             setattr(self, name, value)
         return True
 
-    def add_recent(self, path: Path, unit: str) -> None:
-        """Put `path` first among the recent files and `unit` down for its folder."""
+    def add_recent(self, path: Path, unit: str | None = None) -> None:
+        """Put `path` first among the recent files, and the unit of its meshes down for its folder."""
         full = os.path.realpath(path)  # Path.resolve() fails on links that go round in circles
         self.recent = (full, *(old for old in self.recent if old != full))[:RECENT_LIMIT]
-        self.units = self.units | {_folder(path): unit}
+        if unit is not None:
+            self.units = self.units | {_folder(path): unit}
 
     def unit_for(self, path: Path) -> str | None:
         """The unit in which files of this folder were opened last."""

@@ -236,7 +236,7 @@ class Commands(QObject):
         opener = self.openers.get(kind)
         if opener is not None:
             self._try(lambda: opener(paths[0]))
-            self._preferences.add_recent(paths[0], unit or self._session.choices.unit)
+            self._preferences.add_recent(paths[0])
             return
         reading: tuple[str, TableConvention] | None = (unit, "auto") if unit else None
         reading = reading or self._ask_reading(list(paths))

@@ -16,6 +16,7 @@ from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.session.file_kinds import kind_of_all
 from regolith_studio.session.project import SessionRecipe
 from regolith_studio.session.provenance import SampleSource, VirtualSource
 from regolith_studio.session.session import Session
@@ -72,6 +73,16 @@ def test_that_the_unit_dialog_says_what_cannot_be_opened(opening, monkeypatch, t
     ((sentence, can_open),) = seen
     assert said in sentence
     assert not can_open
+
+
+def test_that_files_of_other_kinds_state_no_unit_for_the_meshes_beside_them(opening, monkeypatch, tmp_path):
+    commands = opening[0]
+    path = tmp_path / "scan.npy"
+    np.save(path, np.zeros((4, 4, 4), np.uint8))
+    monkeypatch.setitem(commands.openers, kind_of_all([path]), lambda _path: None)
+    commands.open_paths([path])
+    assert commands._preferences.recent[0] == str(path.resolve())
+    assert commands._preferences.unit_for(tmp_path / "grain.stl") is None
 
 
 def test_that_the_convention_of_tables_of_coefficients_can_be_chosen(opening, monkeypatch, tmp_path, wait):

@@ -133,6 +133,16 @@ def test_that_one_dialog_asks_only_what_a_table_does_not_state(
     assert path.name in page.angle.sentence.text()
 
 
+def test_that_a_pending_preview_does_not_take_the_place_of_an_opened_heap(page, tmp_path, wait):
+    path = tmp_path / "pile.npz"
+    path.write_bytes(particle_state_bytes(pile_of(35.0)))
+    page._later.start()
+    page.open_path(path)
+    assert not page._later.isActive()
+    wait(lambda: page._measured is not None)
+    assert page._measured.angle == pytest.approx(35.0, abs=2.0)
+
+
 def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):
     flat = pile_of(30.0)
     path = tmp_path / "flat.npz"

@@ -257,6 +257,8 @@ class ReposePage(PageWidget):
         pile, notes = read
         for note in notes:
             self._context.toast.note(note)
+        self._later.stop()  # the preview of the set-up would take the place of the heap
+        self._context.stop(PREVIEW)
         self._shown_run = None
         self.runs.select(None)
         self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=path.name), "")
