@@ -58,9 +58,10 @@ way between them keeps rivals that only come near from deciding over steps."""
 CHECK_EVERY, CHECK_SHARE, CHECK_MOVE = 12, 6, 0.02
 """Accepted steps between two searches for smaller boxes: at least so many, and a half-space in so many, as a
 search takes longer than a step where there are many; and so long in all, as no box becomes smaller before."""
-MET, INEXACT = 1e-9, 1e-4
+MET, INEXACT, LEAST_EXACT = 1e-9, 1e-4, 1e-7
 """Residuals of terms at a kink after the corrections of a step, absolute, or as a share of what the step is
-to gain: the price of such a residual is a hundredth of that."""
+to gain: the price of such a residual is a hundredth of that. Never more than the last, as the gain is large
+to the end where a sphericity that cannot be met has its price."""
 CORRECTIONS = 5
 MAX_RADIUS, RESTART_RADIUS, MIN_RADIUS = 0.25, 0.02, 2e-4
 SHRINK, GOOD = 0.35, 0.5
@@ -263,7 +264,8 @@ def _step(
         return 0.0, length
     for j in range(len(work.step)):
         work.total[j] = work.step[j]
-    if not correct(there, prices, needs_box, max(MET, INEXACT * predicted), scratch, work):
+    tolerance = max(MET, min(INEXACT * predicted, LEAST_EXACT))
+    if not correct(there, prices, needs_box, tolerance, scratch, work):
         return 0.0, length
     fill_overlap(there, there.parts, rays, work)
     gain = merit - merit_of(there, prices)
