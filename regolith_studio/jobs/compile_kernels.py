@@ -19,7 +19,7 @@ from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
 from regolith_studio.messages import N_, Message
 
-TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 18, "annealing": 12, "exact": 119, "compound": 63}
+TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 12, "exact": 118, "compound": 63}
 TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
