@@ -124,7 +124,7 @@ def coarsening_steps(
     """As :func:`coarsen`, yielding each step; the first one has a polyhedron and comes at once."""
     target, run = _prepare(particle, n_facets, method, weights, seed, settings, fewer)
 
-    def told(step: MethodStep) -> Iterator[CoarseningProgress]:
+    def progress_of(step: MethodStep) -> Iterator[CoarseningProgress]:
         polyhedron: Polyhedron | None = None
         if step.half_spaces is not None:
             polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
@@ -132,7 +132,7 @@ def coarsening_steps(
             polyhedron = step.compound().moved(rotation=target.axes.T, scale=target.scale)
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
 
-    return (yield from as_events(run, told))
+    return (yield from as_events(run, progress_of))
 
 
 def _prepare(
