@@ -218,7 +218,7 @@ def warm_up(json: Json = False) -> None:
     from regolith_studio.errors import RegolithError
     from regolith_studio.jobs.compile_kernels import TASKS, compile_first, is_compiled
 
-    run_with_progress(compile_first(*TASKS))
+    run_with_progress(compile_first())
     if failed := [task for task in TASKS if not is_compiled(task)]:
         raise RegolithError(f"Not compiled: {', '.join(failed)}. It is compiled when it is first used.")
     print_result({"compiled": list(TASKS)}, f"Compiled: {', '.join(TASKS)}.", json)

@@ -19,11 +19,14 @@ from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
 from regolith_studio.messages import N_, Message
 
-TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 12, "exact": 118, "compound": 63}
-TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3}
-"""What can be compiled, in the order in which the window needs it, and the files of machine code that each
-adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
-The second line is for single pages. What is compiled in the window instead keeps 2 MB a kernel there."""
+TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 12, "exact": 118}
+_METHODS = (*TASKS, "compound")
+"""Reading to measuring, then the methods of coarsening: each needs what is before it."""
+TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3, "compound": 63}
+"""What can be compiled, in the order in which it is needed, and the files of machine code that each adds to
+those of the tasks before it. Annealing has no kernel that the exact method does not need too. The second line
+is for single pages; compounds are last, since the pages need minutes less than they do. What is compiled in
+the window instead keeps 2 MB a kernel there."""
 
 _PARTS = {"read": "geometry", "fit": "harmonics", "describe": "geometry", "degrees": "harmonics"}
 _PARTS |= {"model": "shape_models", "scan": "imaging", "representatives": "dataset"}
@@ -40,9 +43,8 @@ def is_compiled(task: str) -> bool:
 
 def compile_first_for(*methods: str) -> Steps:
     """:func:`compile_first` for reading, fitting, measuring and coarsening methods."""
-    names = list(TASKS)
-    last = max(names.index(method) if method in TASKS else names.index("describe") for method in methods)
-    yield from compile_first(*names[: last + 1])
+    last = max(_METHODS.index(method if method in TASKS else "describe") for method in methods)
+    yield from compile_first(*_METHODS[: last + 1])
 
 
 _announced: list[tuple[int, int]] = []
@@ -51,11 +53,11 @@ that wait, which would else grow with each of them."""
 
 
 def compile_first(*tasks: str) -> Steps:
-    """Wait until the kernels of these :data:`TASKS` are compiled; no step where they are already.
+    """Wait until the kernels of these tasks, or of all :data:`TASKS`, are compiled; no step where they are.
 
     Where that fails, or nothing can be kept on the disk, they are compiled when they are first called.
     """
-    missing = [task for task in tasks if not is_compiled(task)]
+    missing = [task for task in tasks or TASKS if not is_compiled(task)]
     if not missing:
         return
     ours = _count_files(), sum(TASKS[task] for task in missing)

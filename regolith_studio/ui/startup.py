@@ -32,7 +32,6 @@ from regolith_studio.ui.theme import pixmap
 from regolith_studio.version import __version__
 
 if TYPE_CHECKING:  # the splash is shown before they are loaded
-    from regolith_studio.jobs.runners.thread import ThreadRunner
     from regolith_studio.session.preferences import Preferences
     from regolith_studio.ui.main_window import MainWindow
 
@@ -226,6 +225,8 @@ def open_window(
     preferences: "Preferences | None" = None,
 ) -> "MainWindow":
     """A window with its own session; the particles arrive a moment later."""
+    from regolith_studio.jobs.compile_kernels import compile_first
+    from regolith_studio.jobs.events import Job
     from regolith_studio.jobs.runners.thread import ThreadRunner
     from regolith_studio.session.preferences import Preferences
     from regolith_studio.session.session import Session
@@ -233,7 +234,7 @@ def open_window(
 
     poster = MainThreadInvoker()
     runner = ThreadRunner(poster.post)
-    _compile_in_background(runner)
+    runner.submit(Job(compile_first), lambda _event: None, "compile")
     session = Session(runner)
     files = [Path(path) for path in paths]
     if not files:
@@ -244,15 +245,6 @@ def open_window(
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(files, unit))
     _release_memory(window)
     return window
-
-
-def _compile_in_background(runner: "ThreadRunner") -> None:
-    """Compile what is not compiled yet; compounds last, since the pages need minutes less than they do."""
-    from regolith_studio.jobs.compile_kernels import TASKS, compile_first
-    from regolith_studio.jobs.events import Job
-
-    order = sorted(TASKS, key="compound".__eq__)
-    runner.submit(Job(compile_first, tuple(order)), lambda _event: None, "compile")
 
 
 def _release_memory(window: "MainWindow") -> None:

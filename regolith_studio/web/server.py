@@ -11,7 +11,7 @@ from typing import Any
 
 from regolith_studio.errors import InputError, MissingRequirement, os_error_reason
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.compile_kernels import TASKS, compile_first
+from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.choices import Choices
@@ -71,7 +71,7 @@ class ViewServer:
         server = get_server(self._token, client_type="vue3")
         page = ThreeViewPage(server, session)
         try:
-            runner.submit(Job(compile_first, tuple(TASKS)), lambda _event: None, "compile")
+            runner.submit(Job(compile_first), lambda _event: None, "compile")
             server.controller.on_server_bind.add(lambda web: _serve_below(web, self._token, server.serve))
 
             def report_ready(**_state: Any) -> None:

@@ -18,7 +18,7 @@ from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs import compile_kernels
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one
-from regolith_studio.jobs.compile_kernels import TASKS, compile_first, is_compiled
+from regolith_studio.jobs.compile_kernels import TASKS, compile_first, compile_first_for, is_compiled
 from regolith_studio.jobs.dataset_jobs import choose_job
 from regolith_studio.jobs.events import Partial, Progress, Started
 from regolith_studio.jobs.lecture_jobs import trace_degrees
@@ -88,6 +88,23 @@ def test_that_what_could_not_be_compiled_ahead_is_left_for_the_first_call(compil
     list(compile_first("fit"))
     assert not is_compiled("fit")
     assert len(compiler.processes) == 1
+
+
+def test_that_compounds_are_compiled_last_and_by_no_page_that_has_none(
+    compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[list[str]] = []
+    start = compiler.start
+    monkeypatch.setattr(
+        compile_kernels, "_compile_in_process", lambda tasks: started.append(tasks) or start(tasks)
+    )
+    list(compile_first())
+    assert started.pop() == [*(task for task in TASKS if task != "compound"), "compound"]
+    for task in ("fit", "compound"):
+        compiler.folder.joinpath(task).unlink()
+    list(compile_first_for("exact"))
+    list(compile_first_for("compound"))
+    assert started == [["fit"], ["compound"]]
 
 
 def test_that_a_job_that_is_stopped_stops_the_compiling(compiler: Compiler) -> None:

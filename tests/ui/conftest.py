@@ -27,7 +27,7 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
-from regolith_studio.ui import main_window, startup
+from regolith_studio.ui import main_window
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
@@ -62,8 +62,7 @@ def app(display, tmp_path_factory):  # noqa: ARG001
     heartbeat.timeout.connect(lambda: None)
     heartbeat.start()
     shared_sandbox().start()  # its threads stay, whichever test reads first
-    with patch.object(startup, "_compile_in_background"):
-        yield made
+    return made
 
 
 @pytest.fixture(autouse=True)
