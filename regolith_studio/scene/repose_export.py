@@ -36,6 +36,7 @@ from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.triangles import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes, stl_bytes
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.messages import N_
+from regolith_studio.scene.heap_physics import heap_mjcf, heap_shapes, heap_usd
 from regolith_studio.scene.instancing import COLOURS
 from regolith_studio.steps import result_of
 from regolith_studio.version import __version__
@@ -152,6 +153,7 @@ def _material(number: int, colour: Sequence[float]) -> dict[str, object]:
 
 FORMAT = "regolith-studio-repose-export"
 SERIES, SHAPE_TABLE, HEAP = "particles.pvd", "shapes.vtm", "heap.glb"
+MJCF, USD = "heap.xml", "heap.usda"
 PARAVIEW_SCRIPT, OVITO_SCRIPT = "show_in_paraview.py", "ovito/load_shapes.py"
 
 _README = """{name}: {n:,} particles, {moments} moments; written by Regolith Studio {version}.
@@ -169,6 +171,10 @@ saves all that as ovito/heap.ovito for the program with the window.
 
 heap.glb is the last moment: one node for each particle, which share the meshes of the shapes. Blender and
 other viewers of glTF open it; where a heap of centimetres is cut off, reduce the near clipping distance.
+
+heap.xml (MuJoCo; millimetres, milligrams, milliseconds, or as it says) and heap.usda (USD physics; metres and
+kilograms) are the last moment of polyhedra as rigid bodies of convex hulls, with mass, inertia, friction and
+the plate. Some programs take hulls of at most 64 vertices; the largest here has {largest}.
 
 export.json names the run, the versions, and the SHA-256 of all files.
 """
@@ -297,7 +303,7 @@ class _StageWriter:
 
     def __init__(self, stage: Path, run: RunSummary, shapes: RunShapes) -> None:
         self.times: list[float] = []
-        self.n_particles = 0
+        self.n_particles = self._largest = 0
         self._stage, self._run, self._shapes = stage, run, shapes
         self._last: ParticleState | None = None
         for name in ("particles", "shapes", "ovito"):
@@ -326,6 +332,11 @@ class _StageWriter:
         self._write(OVITO_SCRIPT, _OVITO.encode("ascii"))
         if self._last is not None:
             self._write(HEAP, heap_glb(self._shapes, self._last, [_linear(each) for each in COLOURS]))
+            if not self._shapes.spheres:
+                shapes = heap_shapes(self._run)
+                self._largest = max(len(part.vertices) for each in shapes for part in each.parts)
+                self._write(MJCF, heap_mjcf(self._run, shapes, self._last))
+                self._write(USD, heap_usd(self._run, shapes, self._last))
         self._write(README, self._readme().encode("utf-8", "replace"))
         hashes = {
             path.relative_to(self._stage).as_posix(): _sha256(path)
@@ -341,6 +352,7 @@ class _StageWriter:
             name=self._run.folder.resolve().name,
             n=self.n_particles,
             moments=len(self.times),
+            largest=self._largest,
             version=__version__,
         )
 

@@ -15,13 +15,18 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
 
+from benchmarks.sliding_friction import box_dataset
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase, ShapeKind, prepare
+from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.run_io import (
     FORMAT,
     case_document,
+    read_final_state,
     read_run,
     save_result,
     save_shapes,
@@ -30,8 +35,10 @@ from regolith_studio.dem.run_io import (
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
 from regolith_studio.scene import cameras, plotter_setup
 from regolith_studio.scene.repose_export import export_repose, run_shapes
+from regolith_studio.steps import result_of
 from tests.dataset.example import elbow_entry, entry
 from tests.tolerance import relative
 
@@ -304,3 +311,79 @@ def test_that_compounds_are_the_surface_of_their_union(heap: Path) -> None:
     shapes = run_shapes(read_run(heap))
     assert [mesh.volume for mesh in shapes.meshes] == pytest.approx([np.pi / 6] * 3, rel=1e-9)
     assert trimesh.Trimesh(shapes.meshes[2].vertices, shapes.meshes[2].faces).is_watertight
+
+
+def test_that_mujoco_loads_the_heap_with_its_masses_and_places(heap: Path, tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    export_repose(heap, tmp_path / "export")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "export" / "heap.xml"))
+    pile = particles(3, 0.5)
+    density = ContactParameters().density
+    assert model.nbody == N + 1
+    masses = density * np.pi / 6 * pile.diameters**3 * 1e6
+    assert model.body_mass[1:] == pytest.approx(masses, rel=1e-5)
+    data = mujoco.MjData(model)
+    assert data.qpos.reshape(-1, 7)[:, :3] == pytest.approx(1e3 * pile.points, abs=1e-5)
+    assert model.geom_friction[1:, 0] == pytest.approx(0.8)
+
+
+def test_that_usd_opens_the_heap_with_its_masses_inertia_and_hulls(heap: Path, tmp_path: Path) -> None:
+    """Checked by usd-core: moments and axes give the tensor that trimesh finds for the same hull."""
+    usd = pytest.importorskip("pxr.Usd")
+    physics = pytest.importorskip("pxr.UsdPhysics")
+    geometry = pytest.importorskip("pxr.UsdGeom")
+    shade = pytest.importorskip("pxr.UsdShade")
+    export_repose(heap, tmp_path / "export")
+    stage = usd.Stage.Open(str(tmp_path / "export" / "heap.usda"))
+    assert geometry.GetStageMetersPerUnit(stage) == 1.0
+    assert geometry.GetStageUpAxis(stage) == "Z"
+    pile = particles(3, 0.5)
+    bodies = [each for each in stage.Traverse() if each.HasAPI(physics.RigidBodyAPI)]
+    assert len(bodies) == N
+    for number, body in enumerate(bodies[:6]):
+        mass = physics.MassAPI(body)
+        expected = ContactParameters().density * np.pi / 6 * pile.diameters[number] ** 3
+        assert mass.GetMassAttr().Get() == pytest.approx(expected, rel=1e-6)
+        place = geometry.Xformable(body).ComputeLocalToWorldTransform(0)
+        assert tuple(place.ExtractTranslation()) == pytest.approx(pile.points[number], abs=1e-8)
+        (shape,) = body.GetChildren()
+        scale = geometry.Xformable(shape).GetLocalTransformation().GetRow(0).GetLength()
+        hulls = [geometry.Mesh(each) for each in shape.GetChildren()]
+        assert len(hulls) == (2 if number % 3 == 2 else 1)
+        bound, _ = shade.MaterialBindingAPI(hulls[0]).ComputeBoundMaterial("physics")
+        assert str(bound.GetPath()) == "/heap/grains_material"
+        if len(hulls) == 1:
+            solid = trimesh.Trimesh(
+                scale * np.array(hulls[0].GetPointsAttr().Get()),
+                np.array(hulls[0].GetFaceVertexIndicesAttr().Get()).reshape(-1, 3),
+            )
+            turn = mass.GetPrincipalAxesAttr().Get()
+            axes = Rotation.from_quat([*turn.GetImaginary(), turn.GetReal()]).as_matrix()
+            tensor = axes @ np.diag(mass.GetDiagonalInertiaAttr().Get()) @ axes.T
+            solid.density = ContactParameters().density
+            assert tensor == pytest.approx(solid.moment_inertia, rel=1e-4, abs=1e-4 * np.abs(tensor).max())
+    scene = physics.Scene(stage.GetPrimAtPath("/heap/scene"))
+    assert scene.GetGravityMagnitudeAttr().Get() == pytest.approx(9.81)
+
+
+@pytest.mark.slow
+def test_that_a_heap_stays_at_rest_in_mujoco(boxes_run: Path, tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    export_repose(boxes_run, tmp_path / "export")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "export" / "heap.xml"))
+    data = mujoco.MjData(model)
+    begun = data.qpos.reshape(-1, 7)[:, :3].copy()
+    mujoco.mj_step(model, data, 5000)  # 50 ms
+    moved = np.linalg.norm(data.qpos.reshape(-1, 7)[:, :3] - begun, axis=1)
+    diameter = 1e3 * read_final_state(boxes_run / "final.npz").diameters.mean()
+    assert np.median(moved) < 0.01 * diameter
+
+
+@pytest.fixture(scope="module")
+def boxes_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run on MuJoCo of few particles to its end."""
+    folder = tmp_path_factory.mktemp("rest")
+    case = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.15), n_particles=40, seed=1)
+    request = ReposeRequest(case, evaluation=EvaluationSettings(min_particles=40))
+    result_of(repose_steps(write_dataset(folder / "boxes", box_dataset()), folder / "run", request))
+    return folder / "run"
