@@ -24,7 +24,7 @@ BUTTONS = {
 
 @pytest.fixture
 def window(shown, preferences):
-    session = Session(InlineRunner(), Choices(method="quadric"))
+    session = Session(InlineRunner(), Choices(method="quadric", level=2))
     made = MainWindow(session, preferences, "image")
     made.resize(1280, 800)
     session.adopt([Particle("ball", icosphere(2).moved(scale=40.0))])
