@@ -33,9 +33,5 @@ def test_that_a_fit_without_the_waves_of_its_grain_names_the_degree_that_has_the
 
 def test_that_a_near_fit_says_nothing() -> None:
     assert sentence(bumpy(0.2, 12), 20) == ""
-    assert sentence(icosphere_mesh(), 4) == ""
-
-
-def icosphere_mesh() -> Mesh:
-    sphere = icosphere(4)
-    return Mesh(sphere.vertices, sphere.faces)
+    egg = icosphere(3)
+    assert sentence(Mesh(egg.vertices * [1.0, 1.2, 1.5], egg.faces), 8) == ""

@@ -105,7 +105,7 @@ def test_that_a_job_in_a_process_stops_between_two_yields(pool: ProcessPoolRunne
     assert [each for each in received if not isinstance(each, Progress)] == [Stopped()]
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_that_the_progress_of_jobs_reaches_who_waits_for_them(workers: int, tmp_path: Path) -> None:
     """Each of two jobs counts on until a file is there, which is written once both have been heard of."""
     heard: dict[int, int] = {}
@@ -160,13 +160,9 @@ def test_that_leaving_a_batch_early_stops_its_jobs(pool: ProcessPoolRunner) -> N
     assert answer == [Finished(16)]
 
 
-def test_that_a_worker_that_dies_costs_its_particle_and_no_other() -> None:
-    runner = ProcessPoolRunner(2)
-    try:
-        jobs = [Job(square, (1,)), Job(die), *(Job(square, (x,)) for x in range(2, 6))]
-        results = [e for e in in_order(runner, jobs, window=3) if e]
-    finally:
-        runner.close()
+def test_that_a_worker_that_dies_costs_its_particle_and_no_other(pool: ProcessPoolRunner) -> None:
+    jobs = [Job(square, (1,)), Job(die), *(Job(square, (x,)) for x in range(2, 6))]
+    results = [e for e in in_order(pool, jobs, window=3) if e]
     assert isinstance(results[1], Failed)
     assert "died" in results[1].sentence
     assert [e for i, e in enumerate(results) if i != 1] == [Finished(x * x) for x in (1, 2, 3, 4, 5)]
