@@ -133,9 +133,7 @@ def test_that_an_octahedron_has_all_facets_or_says_why_not() -> None:
 @pytest.mark.parametrize(
     ("axes", "n_facets"),
     [
-        ((10.0, 10.0, 1.0), 30),
         ((20.0, 20.0, 1.0), 30),
-        ((20.0, 1.0, 1.0), 30),
         ((30.0, 1.0, 1.0), 20),  # all groups of its triangles run from end to end
     ],
 )

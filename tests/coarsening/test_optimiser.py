@@ -32,6 +32,7 @@ from tests.coarsening.conftest import bumpy
 WANTED = np.array([1.0, 0.9, 0.8, 1.4, 1.75, 1.0])
 
 
+@pytest.mark.slow  # the solver alone is compiled for it
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("share", [1.0, 0.1])
 def test_that_multipliers_are_those_that_scipy_finds_for_the_dual(seed: int, share: float) -> None:

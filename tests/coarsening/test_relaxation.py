@@ -31,10 +31,8 @@ def urchin() -> Mesh:
     return Mesh(ball.vertices * (1.0 + 0.8 * np.exp(-400.0 * (1.0 - nearest)))[:, None], ball.faces)
 
 
-@pytest.mark.parametrize(
-    "n_facets",
-    [12, pytest.param(20, marks=pytest.mark.slow), pytest.param(50, marks=pytest.mark.slow)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("n_facets", [12, 20, 50])
 def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_facets: int) -> None:
     found = coarsen(egg(1.0, 0.99, 0.98), n_facets, "exact")
     most = max_sphericity(n_facets)

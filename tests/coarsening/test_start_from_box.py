@@ -45,10 +45,8 @@ def errors_by_scipy(target: Target, n_facets: int) -> FloatArray:
 
 
 @pytest.mark.parametrize("scales", [(10.0, 10.0, 1.0), (20.0, 20.0, 1.0), (10.0, 9.0, 1.0), (2.0, 2.0, 1.0)])
-@pytest.mark.parametrize(
-    "n_facets",
-    [12, pytest.param(20, marks=pytest.mark.slow), pytest.param(50, marks=pytest.mark.slow)],
-)
+@pytest.mark.parametrize("n_facets", [12, 20, 50])
+@pytest.mark.slow
 def test_that_bricks_with_rounded_corners_are_met(scales: tuple[float, ...], n_facets: int) -> None:
     assert errors_by_scipy(Target.of(rounded_brick(*scales)), n_facets).max() <= 1e-6
 

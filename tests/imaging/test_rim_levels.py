@@ -79,6 +79,18 @@ INSIDES: dict[str, Field] = {
 }
 
 
+BETWEEN = {
+    "a closed pore of 5 %",
+    "a closed pore of 9 %",
+    "vesicles of 6 %",
+    "a core of 9 % twice as bright",
+    "a core of 38 % twice as bright",
+    "a dim core of 9 %",
+    "a dim core of 38 %",
+}
+"""Milder than another of their kind."""
+
+
 def scan(values: np.ndarray, noise: float, dtype: str = "uint16") -> Volume:
     seen = ndimage.gaussian_filter(values, BLUR)
     seen += noise * np.random.default_rng(1).standard_normal(values.shape)
@@ -88,7 +100,10 @@ def scan(values: np.ndarray, noise: float, dtype: str = "uint16") -> Volume:
     return Volume(grey.astype(dtype), (1, 1, 1), "grey", "scan")
 
 
-@pytest.mark.parametrize("inside", INSIDES)
+@pytest.mark.parametrize(
+    "inside",
+    [pytest.param(name, marks=[pytest.mark.slow] if name in BETWEEN else []) for name in INSIDES],
+)
 def test_that_what_a_ball_holds_does_not_move_its_surface(inside: str) -> None:
     """A level from the mean of the grain made it 4 to 26 % too large with pores, and 7 to 25 % too small with
     bright cores; one from a shell that ends at the core still 21 % too small 2 voxels above bright ones."""

@@ -41,6 +41,7 @@ def test_that_the_filter_is_the_series_of_chebyshev_polynomials_of_the_mean_of_n
     """On a tetrahedron the mean of neighbours has the eigenvalues 1 and -1/3, and the filter 1/3 of these."""
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     corners = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    faces.setflags(write=False)  # as those of a mesh, for which the filter is compiled
     series = _series(7, 0.4)
     factor = np.polynomial.chebyshev.chebval((1 - 1 / 3) / 2, series)
     assert LowPass(faces, 4, 7)(corners, 0.4) == pytest.approx(factor * corners, abs=1e-12)
