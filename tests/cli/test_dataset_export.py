@@ -3,12 +3,14 @@
 import csv
 import io
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from regolith_studio.cli.entry import run
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import Exporter
 from regolith_studio.dataset.exporters import EXPORTERS
@@ -17,10 +19,11 @@ from regolith_studio.jobs import dataset_jobs
 from regolith_studio.session.recipe import Exports
 
 
-@pytest.fixture
-def folder(command, grains: Path, tmp_path: Path) -> Path:
-    assert command("dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric").code == 0
-    return tmp_path / "set"
+@pytest.fixture(scope="module")
+def folder(grains: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("library") / "set"
+    assert run(["dataset", "build", str(grains), "-o", str(made), "--method", "quadric"]) == 0
+    return made
 
 
 def test_that_a_sample_is_a_table_and_the_same_for_the_same_seed(
@@ -154,6 +157,7 @@ def test_that_formats_are_listed_with_what_they_lose(command) -> None:
 
 def test_that_a_library_is_listed_with_what_came_from_what(command, folder: Path, tmp_path: Path) -> None:
     command("dataset", "export", folder, "--to", "hoomd", "-o", tmp_path / "out")
+    shutil.copytree(folder, tmp_path / "set")
     result = command("dataset", "list", tmp_path)
     assert result.code == 0
     first, _, child, _ = result.out.splitlines()

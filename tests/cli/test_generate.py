@@ -16,7 +16,10 @@ from tests.files import csv_rows
 
 @pytest.fixture(scope="module")
 def ellipsoids(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with 24 ellipsoids of different sizes, elongations and directions."""
+    """A folder with 24 bumpy ellipsoids of different sizes, elongations and directions.
+
+    The box of a smooth one takes longer than all the rest.
+    """
     folder = tmp_path_factory.mktemp("ellipsoids")
     rng = np.random.default_rng(0)
     sphere = icosphere(3)
@@ -24,7 +27,8 @@ def ellipsoids(tmp_path_factory: pytest.TempPathFactory) -> Path:
         axes = 20 * np.exp(0.3 * rng.normal()) * np.array([1.0, *np.exp(0.2 * rng.normal(size=2))])
         turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         turn *= np.linalg.det(turn)
-        body = Mesh(sphere.vertices * axes @ turn.T, sphere.faces)
+        bumps = 1 + 0.1 * np.cos(sphere.vertices @ rng.normal(size=(3, 3)) * 4).prod(axis=1)
+        body = Mesh(sphere.vertices * bumps[:, None] * axes @ turn.T, sphere.faces)
         (folder / f"grain-{number:02d}.stl").write_bytes(stl_bytes(body.triangles, "test"))
     return folder
 
@@ -98,15 +102,17 @@ def test_that_the_shipped_particles_are_a_sample_by_their_name(command, tmp_path
     assert result.code == 0
 
 
+@pytest.mark.slow
 def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tmp_path: Path) -> None:
+    quick = ("--model", "gaussian_field", "--l-max", 4, "--level", 2)
     for place, jobs in (("one", 1), ("two", 2)):
-        result = command("generate", fit, "-n", 23, "-o", tmp_path / place, "--level", 2, "--jobs", jobs)
+        result = command("generate", fit, "-n", 23, "-o", tmp_path / place, *quick, "--jobs", jobs)
         assert result.code == 0, result.err
     names = sorted(path.name for path in (tmp_path / "one").iterdir())
     assert len([name for name in names if name.endswith(".stl")]) == 23
     for name in names:
         assert (tmp_path / "two" / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
-    command("generate", fit, "-n", 2, "-o", tmp_path / "few", "--level", 2)
+    command("generate", fit, "-n", 2, "-o", tmp_path / "few", *quick)
     first = "virtual-000001.stl"
     assert (tmp_path / "few" / first).read_bytes() == (tmp_path / "one" / first).read_bytes()
 
@@ -182,7 +188,7 @@ def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: 
         (("--size-range", 3, 2), 2, "range of sizes"),
         (("--l-max", 40), 2, "less than or equal to 30"),
         (("--format", "obj"), 2, "must be stl or npz"),
-        (("--names", "a,b"), 2, "Only a mixture"),
+        (("--names", "a,b", "--model", "gaussian_field", "--l-max", 3), 2, "Only a mixture"),
         (("--model", "mixture_field", "--names", "a,b,c,d,e,f,g,h,i,j", "--l-max", 3), 2, "names, got 10"),
         (("--l-max", 9), 1, "expanded to l_max = 8"),
         (("--level", 99), 2, "level"),

@@ -82,7 +82,7 @@ def start(code: str, folder: Path) -> "subprocess.Popen[str]":
 @pytest.mark.parametrize(
     ("waits", "name", "code"),
     [
-        ("waits for a thread", "SIGTERM", 143),
+        pytest.param("waits for a thread", "SIGTERM", 143, marks=pytest.mark.slow),
         pytest.param("does not notice", "SIGHUP", 129, marks=pytest.mark.slow),
         pytest.param("leaves a thread", "SIGINT", 130, marks=pytest.mark.slow),
         pytest.param("waits for a program", "SIGINT", 130, marks=pytest.mark.slow),

@@ -277,7 +277,7 @@ def test_that_the_inscribed_ball_of_a_cube_has_the_errors_of_the_formulas() -> N
     assert errors.jaccard == pytest.approx(1 - np.pi / 6, abs=1e-3)
 
 
-@pytest.mark.parametrize("index", range(3))
+@pytest.mark.parametrize("index", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2))])
 def test_that_the_union_has_the_polyhedron_s_volume_and_inertia_to_a_thousandth(
     dataset: Dataset, index: int
 ) -> None:

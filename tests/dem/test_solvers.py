@@ -112,7 +112,7 @@ def pull_apart(key: str, solver: Any, force: float) -> None:
 
 @pytest.mark.parametrize("key", [key for key in KEYS if key != "rapier"])
 @pytest.mark.parametrize("shapes", ["polyhedra", "spheres"])
-@pytest.mark.parametrize("bond", [1.0, 10.0])
+@pytest.mark.parametrize("bond", [1.0, pytest.param(10.0, marks=pytest.mark.slow)])
 def test_that_a_doublet_parts_at_its_pull_off_force(key: str, shapes: Any, bond: float) -> None:
     """Two cubes or balls without gravity, pulled apart by 0.95 and 1.05 of Bond number times weight."""
     prepared = scene([cuboid(1, 1, 1)], 0.5, 2)

@@ -53,10 +53,8 @@ def test_that_meshes_that_once_broke_a_parser_are_refused_in_words(name: str) ->
 
 @pytest.mark.parametrize("name", VOLUMES)
 def test_that_volumes_that_once_broke_a_parser_are_refused_in_words(name: str) -> None:
-    sandbox = Sandbox()
     with pytest.raises(FileError) as caught:
-        read_voxels(HERE / "crashes_volumes" / name, sandbox)
-    sandbox.close()
+        read_voxels(HERE / "crashes_volumes" / name)
     assert str(caught.value).startswith(f"{name} {VOLUMES[name]}")
 
 

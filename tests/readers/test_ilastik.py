@@ -72,8 +72,10 @@ def exported(
     return path
 
 
-@pytest.mark.parametrize("axes", ["zyxc", "tzyxc", "xyzc", "czyx"])
-@pytest.mark.parametrize("dtype", [np.float32, np.uint8, np.uint16])
+@pytest.mark.parametrize(
+    ("axes", "dtype"),
+    [("zyxc", np.float32), ("tzyxc", np.uint8), ("xyzc", np.uint16), ("czyx", np.float32)],
+)
 def test_that_a_probability_map_gives_the_grains(axes: str, dtype: type, tmp_path: Path) -> None:
     maps = probabilities()
     if dtype is not np.float32:

@@ -146,9 +146,10 @@ def test_that_mutations_give_voxels_or_a_sentence(name, count, seed, folder) -> 
     run_own(name, count, seed, folder / name)
 
 
+@pytest.mark.parametrize(("count", "seed"), [(8, 22), pytest.param(40, 22, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", LIBRARIES)
-def test_that_forty_mutations_of_library_formats_give_voxels_or_a_sentence(name, folder) -> None:
-    assert run_sandboxed(name, 40, 22, folder / name) <= 2
+def test_that_mutations_of_library_formats_give_voxels_or_a_sentence(name, count, seed, folder) -> None:
+    assert run_sandboxed(name, count, seed, folder / name) <= 2
 
 
 @pytest.mark.slow

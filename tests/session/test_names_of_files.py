@@ -84,7 +84,7 @@ def test_that_a_recipe_writes_its_particles_below_its_output_whatever_they_are_c
     assert [each["file"] for each in coarse] == [f"{file_stem(each['name'])}.stl" for each in coarse]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ["../../escaped", "{outside}/absolute", "CON", "n\nl"])
 def test_that_a_population_is_written_below_the_output_whatever_it_is_called(output: Path, name: str) -> None:
     population = {"sources": ["lunar_soil"], "n": 2, "name": name.format(outside=output.parent)}
     outputs = {"descriptors": False, "dataset": False, "summary": False}

@@ -33,13 +33,13 @@ def test_that_at_least_five_materials_ship_and_say_that_they_are_synthesised() -
 @pytest.mark.parametrize("name", sorted(materials()))
 def test_that_a_material_draws_particles_with_its_sizes_and_amplitudes(name: str) -> None:
     card = materials()[name]
-    draws = card.model(10).draw(1500, 0)
+    draws = card.model(10).draw(500, 0)
     logs = np.log(draws.equivalent_radii())
     assert np.exp(logs.mean()) == pytest.approx(card.median_radius, rel=0.03)
     assert logs.std() == pytest.approx(card.log_deviation, rel=0.06)
     assert draws.rejected == 0
-    field = card.field(10).draw(300, 0)
-    radii = np.stack([field.particle(i).values for i in range(300)])
+    field = card.field(10).draw(100, 0)
+    radii = np.stack([field.particle(i).values for i in range(100)])
     relative = radii / radii[:, :1]
     amplitude = np.sqrt((relative[:, 4:9] ** 2).mean())
     assert amplitude == pytest.approx(card.relative_amplitudes[1], rel=0.15)

@@ -15,6 +15,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.shape_models.chunked_sampling import CHUNK
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, write_model
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
@@ -41,8 +42,8 @@ def test_that_the_models_are_found_by_themselves() -> None:
 def test_that_the_first_particles_do_not_depend_on_how_many_are_drawn(
     key: str, fitted: dict[str, FittedModel]
 ) -> None:
-    few, many = fitted[key].draw(7, seed=3), fitted[key].draw(1203, seed=3)
-    assert len(many) == 1203
+    few, many = fitted[key].draw(7, seed=3), fitted[key].draw(CHUNK + 3, seed=3)
+    assert len(many) == CHUNK + 3
     assert few.coefficients.tobytes() == many.coefficients[:7].tobytes()
     assert fitted[key].draw(7, seed=4).coefficients.tobytes() != few.coefficients.tobytes()
     assert len(fitted[key].draw(0, seed=3)) == 0
@@ -170,7 +171,7 @@ def test_that_particles_of_one_size_are_drawn_at_that_size(
     key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]
 ) -> None:
     sample = rough_sample(20, 3, spread=0.0)
-    radii = quick_fit(key, sample, 3).draw(300, 0).equivalent_radii()
+    radii = quick_fit(key, sample, 3).draw(100, 0).equivalent_radii()
     assert radii.mean() == pytest.approx(sample.equivalent_radii.mean(), rel=0.03)
 
 

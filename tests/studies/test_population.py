@@ -39,7 +39,7 @@ from regolith_studio.studies.population_tables import (
 from tests.steps import played
 
 SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
-SMALL = {"l_max": 4, "n_draws": 24, "n_splits": 2, "n_repeats": 2, "level": 2}
+SMALL = {"l_max": 4, "n_draws": 20, "n_splits": 2, "n_repeats": 2, "level": 2}
 
 
 def rough_sample(n: int, l_max: int = 4) -> Sample:
@@ -56,7 +56,7 @@ def run(*arguments: object, **options: object) -> tuple[list[StudyProgress], Pop
 
 @pytest.fixture(scope="module")
 def small() -> tuple[list[StudyProgress], PopulationStudy]:
-    return run(rough_sample(60), SMALL_MODELS, **SMALL)
+    return run(rough_sample(40), SMALL_MODELS, **SMALL)
 
 
 @pytest.mark.slow
@@ -71,7 +71,7 @@ def test_that_every_table_has_a_row_for_each_case(
     small: tuple[list[StudyProgress], PopulationStudy],
 ) -> None:
     _, study = small
-    assert study.measured.shape == (60, len(KEYS))
+    assert study.measured.shape == (40, len(KEYS))
     assert len(distance_table(study).rows) == 3 * 2 * len(KEYS)
     assert len(pair_table(study).rows) == 3 * 10
     assert set(ranking_table(study).column("model")) == set(SMALL_MODELS)
@@ -164,7 +164,7 @@ def test_that_a_study_becomes_tables_and_pictures(
     ],
 )
 def test_that_a_study_that_cannot_be_made_is_refused(changes: dict[str, object], words: str) -> None:
-    options = {"models": ["gaussian_field"], "l_max": 4, "n_draws": 20, "n_splits": 1} | changes
+    options = {"models": ["gaussian_field"], "l_max": 4, "n_draws": 20, "n_splits": 1, "level": 2} | changes
     with pytest.raises(InputError, match=words):
         run(rough_sample(20), **options)
 
