@@ -3,6 +3,7 @@
 import hashlib
 import math
 import os
+import re
 import shlex
 import subprocess
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -85,7 +86,7 @@ class Exporter:
     - ``carries``, ``loses``: what the format holds of a dataset and what it cannot hold; shown before the
       export and in the README.
     - ``load_command``: command, or line of an input file, that uses the files; ``{folder}`` is replaced by
-      their folder, ``{shell}`` by the same quoted for a shell.
+      their folder, ``{shell}`` by the same quoted for a shell, ``{shape}`` by the name of the first shape.
     - ``files``: content of every file by its relative path; equal input gives equal bytes. The entry
       :data:`NOTES` is not a file but text for the README, such as measured errors.
     - ``alters``: how shapes are changed, in one sentence; empty if they are exact. Such an export must be
@@ -183,7 +184,7 @@ def prepared_export(
             def finish() -> ExportResult:
                 with _reported(target):
                     exchange(stage, target)
-                command = load_command(exporter, target)
+                command = load_command(exporter, target, dataset)
                 return ExportResult(exporter.key, target, tuple(sorted(content)), command)
 
             yield finish
@@ -197,10 +198,10 @@ def _reported(target: Path) -> Iterator[None]:
         raise DatasetError(f"The export {target} cannot be written ({os_error_reason(error)}).") from error
 
 
-def load_command(exporter: Exporter, folder: Path) -> str:
-    """The exporter's command for files in `folder`, quoted if its path contains blanks."""
+def load_command(exporter: Exporter, folder: Path, dataset: Dataset) -> str:
+    """The exporter's command for the files of a dataset in `folder`, quoted if its path contains blanks."""
     shell = subprocess.list2cmdline([str(folder)]) if os.name == "nt" else shlex.quote(str(folder))
-    return exporter.load_command.format(folder=folder, shell=shell)
+    return exporter.load_command.format(folder=folder, shell=shell, shape=shape_names(dataset)[0])
 
 
 def check_loss_accepted(exporter: Exporter, accept_loss: bool) -> None:
@@ -265,7 +266,7 @@ def _readme(
         f"Written by Regolith Studio {__version__} from a dataset of {len(dataset)} shapes.",
         "",
         f"Units: {exporter.units}",
-        f"To use: {load_command(exporter, Path())}",
+        f"To use: {load_command(exporter, Path(), dataset)}",
         "",
         "Carried:",
         *(f"  - {one}" for one in exporter.carries),
@@ -334,7 +335,16 @@ def sizes_csv(dataset: Dataset) -> bytes:
     return csv_bytes(rows)
 
 
+MAX_SHAPE_NAME = 32
+"""Letters of a particle's name in that of its shape, which stands in the 80 bytes of an STL file's head."""
+
+
 def shape_names(dataset: Dataset) -> list[str]:
-    """Names without special characters, in order: ``shape_00``, ``shape_01`` ..."""
+    """Names in order, each with that of its particle: ``shape_00_grain_1``, ``shape_01_grain_5`` ...
+
+    They consist of letters, digits and underscores of ASCII, which every program takes for a name.
+    """
     digits = max(2, len(str(len(dataset) - 1)))
-    return [f"shape_{index:0{digits}d}" for index in range(len(dataset))]
+    plain = (re.sub("[^A-Za-z0-9]+", "_", one.name).strip("_") for one in dataset.representatives)
+    numbered = enumerate(name[:MAX_SHAPE_NAME] for name in plain)
+    return [f"shape_{index:0{digits}d}_{name}".rstrip("_") for index, name in numbered]

@@ -35,6 +35,7 @@ from regolith_studio.dataset.size_distributions import normalised_shares
 from regolith_studio.errors import DatasetError, InputError, SchemaVersionError, os_error_reason
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import Content, recover_folder, replace_folder
+from regolith_studio.io.file_names import unique_name
 from regolith_studio.io.own_files import canonical_json
 from regolith_studio.io.triangles import HEADER_SIZE
 
@@ -176,8 +177,9 @@ written by Regolith Studio.
 dataset.json   weights, size distributions, exact half-spaces, provenance.
                Its fields are described by the JSON Schema of the program
                (resources/schema/dataset.schema.json), schema version {version}.
-meshes/        one binary STL a shape: closed, outward normals, volume 1, centroid at the origin,
-               longest principal axis along x, shortest along z. The coordinates have no unit.
+meshes/        one binary STL a shape, named after its particle: closed, outward normals, volume 1,
+               centroid at the origin, longest principal axis along x, shortest along z. The
+               coordinates have no unit.
                Of a compound, which is the union of convex parts, it is the surface of the
                union, and each part has a file besides (.part1, .part2, ...) in the same frame.
 
@@ -311,12 +313,14 @@ def _files(
 ) -> Iterator[tuple[str, Content]]:
     count = len(weights)
     files: list[list[dict[str, Any]]] = []
+    used: dict[str, int] = {}
     for index, shape in enumerate(shapes()):
         files.append([])
+        name = unique_name(shape.record["name"], shape.record["group"], used)
         for part, mesh in enumerate(shape.meshes):
             # The process that stored the shape knew neither its number nor how many there are.
             header = mesh_header(index, count, part).encode("ascii").ljust(HEADER_SIZE)
-            file, content = mesh_path(index, count, part), header + mesh[HEADER_SIZE:]
+            file, content = mesh_path(name, part), header + mesh[HEADER_SIZE:]
             files[-1].append({"file": file, "sha256": hashlib.sha256(content).hexdigest()})
             yield file, content
     # Last, with the hashes of all files; the shapes come a second time, so that one is in memory at a time.

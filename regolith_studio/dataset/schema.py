@@ -15,7 +15,8 @@ from regolith_studio.dataset.size_distributions import WEIGHT_TOLERANCE, AnySize
 
 FORMAT = "regolith-studio-dataset"
 SCHEMA_VERSION = 4
-MESH_PATH = r"^meshes/[A-Za-z0-9_][A-Za-z0-9_.-]*\.stl$"
+MESH_PATH = r"""^meshes/[^./\\:*?"<>|\x00-\x1f\x7f][^/\\:*?"<>|\x00-\x1f\x7f]*\.stl$"""
+"""Of a file directly in that folder, and not hidden; no signs that separate folders, drives or streams."""
 
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of the file's bytes.")]
 Triple = tuple[float, float, float]

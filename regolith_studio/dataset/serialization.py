@@ -28,6 +28,7 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Source
+from regolith_studio.io.file_names import file_stem
 from regolith_studio.io.own_files import parse_strict_json
 from regolith_studio.io.triangles import stl_bytes
 
@@ -51,19 +52,15 @@ def stored_triangles(mesh: Mesh) -> FloatArray:
     return np.asarray(mesh.triangles[kept])
 
 
-def mesh_path(index: int, count: int, part: int = 0) -> str:
-    """Relative path of the STL file of one of `count` representatives, or of a part, counted from 1."""
-    return f"meshes/particle_{_numbered(index, count)}{f'.part{part}' if part else ''}.stl"
+def mesh_path(name: str, part: int = 0) -> str:
+    """Relative path of the STL file of a representative by its unique name, or of a part, counted from 1."""
+    return f"meshes/{file_stem(name)}{f'.part{part}' if part else ''}.stl"
 
 
 def mesh_header(index: int, count: int, part: int = 0) -> str:
     """Header of that file."""
     of = f"part {part} of " if part else ""
-    return f"regolith-studio {of}unit-volume shape {_numbered(index, count)}"
-
-
-def _numbered(index: int, count: int) -> str:
-    return f"{index:0{max(4, len(str(count - 1)))}d}"
+    return f"regolith-studio {of}unit-volume shape {index:0{max(4, len(str(count - 1)))}d}"
 
 
 def head_document(name: str, weighting: Weighting, provenance: Provenance) -> dict[str, Any]:

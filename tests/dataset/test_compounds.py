@@ -63,9 +63,9 @@ def test_that_an_elbow_turned_and_scaled_becomes_the_same_shape() -> None:
 
 def test_that_there_is_one_stl_of_the_union_and_one_a_part_which_trimesh_measures(folder: Path) -> None:
     names = sorted(path.name for path in (folder / "meshes").iterdir())
-    parts = ["particle_0000.part1.stl", "particle_0000.part2.stl"]
-    assert names == [*parts, "particle_0000.stl", "particle_0001.stl"]
-    union = trimesh.load_mesh(folder / "meshes" / "particle_0000.stl")
+    parts = ["elbow.part1.stl", "elbow.part2.stl"]
+    assert names == [*parts, "elbow.stl", "grain-1.stl"]
+    union = trimesh.load_mesh(folder / "meshes" / "elbow.stl")
     assert union.is_watertight
     assert not union.is_convex
     assert union.volume == pytest.approx(1.0, rel=1e-6)
@@ -158,11 +158,11 @@ def test_that_a_wrong_number_of_a_compound_is_found_and_said(folder: Path, kind:
 
 
 def test_that_a_part_of_another_shape_is_found(folder: Path) -> None:
-    other = (folder / "meshes" / "particle_0000.part1.stl").read_bytes()
-    (folder / "meshes" / "particle_0000.part2.stl").write_bytes(other)
+    other = (folder / "meshes" / "elbow.part1.stl").read_bytes()
+    (folder / "meshes" / "elbow.part2.stl").write_bytes(other)
     with pytest.raises(DatasetError, match=r"part2\.stl is not the file"):
         read_dataset(folder)
-    (folder / "meshes" / "particle_0000.part2.stl").unlink()
+    (folder / "meshes" / "elbow.part2.stl").unlink()
     with pytest.raises(DatasetError, match=r"part2\.stl cannot be read"):
         read_dataset(folder)
 

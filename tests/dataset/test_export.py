@@ -3,15 +3,24 @@
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, load_command, write_export
+from regolith_studio.dataset.export import (
+    NOTES,
+    Exporter,
+    ExportOptions,
+    load_command,
+    shape_names,
+    write_export,
+)
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import particle_count
 from regolith_studio.errors import DatasetError, InputError
@@ -56,8 +65,24 @@ def test_that_an_export_says_what_it_is_and_gives_the_same_bytes_again(
     assert all(
         said in readme for said in (exporter.units, *exporter.carries, *exporter.loses, exporter.alters)
     )
-    assert load_command(exporter, Path()) in readme
+    assert load_command(exporter, Path(), make_dataset(3)) in readme
     assert "{" not in readme.replace("{folder}", "")
+
+
+@pytest.mark.parametrize("key", ["edem", "chrono", "multi-sphere"])
+def test_that_files_and_the_command_that_loads_one_name_its_particle(key, tmp_path, make_dataset) -> None:
+    result = write_export(make_dataset(2), EXPORTERS[key], tmp_path / "x", OPTIONS, accept_loss=True)
+    named = re.search(r"/x/(\w+/shape_00_grain_0\.\w+)", result.load_command)
+    assert named is not None
+    assert named.group(1) in result.files
+
+
+def test_that_names_of_shapes_are_plain_for_every_program_and_differ(make_dataset) -> None:
+    dataset = make_dataset(3)
+    names = ("grain 1.part2/Ä", "月の石", "x" * 90)
+    pairs = zip(dataset.representatives, names, strict=True)
+    renamed = replace(dataset, representatives=tuple(replace(one, name=name) for one, name in pairs))
+    assert shape_names(renamed) == ["shape_00_grain_1_part2", "shape_01", "shape_02_" + "x" * 32]
 
 
 @pytest.mark.parametrize("key", sorted(EXPECTED))

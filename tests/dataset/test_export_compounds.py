@@ -67,13 +67,13 @@ def test_that_mujoco_finds_mass_centre_and_inertia_of_the_union(dataset: Dataset
 def test_that_gltf_draws_the_union_with_its_volume_and_inertia(dataset: Dataset, tmp_path: Path) -> None:
     folder = exported(dataset, "gltf", tmp_path / "x")
     scene = trimesh.load_scene(folder / "particles.glb")
-    union = scene.geometry["shape_00"].copy()
+    union = scene.geometry["shape_00_elbow"].copy()
     union.merge_vertices(merge_norm=True)
     assert union.is_watertight
     assert not union.is_convex
     assert union.volume == pytest.approx(1.0, rel=1e-5)
     assert np.linalg.eigvalsh(union.moment_inertia) == pytest.approx(elbow_moments(), rel=1e-4)
-    stored = scene.geometry["shape_00"]
+    stored = scene.geometry["shape_00_elbow"]
     across = np.einsum("ij,ij->i", stored.vertex_normals[stored.faces[:, 0]], stored.face_normals)
     assert across == pytest.approx(np.ones(len(across)), abs=1e-4)
 
@@ -98,7 +98,7 @@ def test_that_convex_bodies_of_aspherix_add_up_to_mass_and_centre_of_the_union(
     body = re.compile(r"convex_body id (\S+) file (\S+) mass (\S+) center_of_mass \((.*)\)")
     bodies = {found.group(1): found for line in lines if (found := body.fullmatch(line))}
     template = re.compile(
-        r"particle_template id shape_00_00 material regolith shape concave convex_bodies {(.*)} "
+        r"particle_template id shape_00_elbow_00 material regolith shape concave convex_bodies {(.*)} "
         r"moment_of_inertia principal \((.*)\) off_diagonal \((.*)\)  # mass fraction \S+"
     )
     (found,) = [match for line in lines if (match := template.fullmatch(line))]
@@ -115,7 +115,7 @@ def test_that_convex_bodies_of_aspherix_add_up_to_mass_and_centre_of_the_union(
         part = trimesh.load_mesh(folder / bodies[name].group(2))
         assert part.is_convex
         assert part.volume == relative(PART * scale**3, rel=1e-5)
-    assert any("shape_01_00 material regolith shape convex file" in line for line in lines)
+    assert any("shape_01_grain_1_00 material regolith shape convex file" in line for line in lines)
 
 
 def test_that_rockable_gets_the_facets_of_all_parts_and_the_mass_data_of_the_union(
@@ -177,7 +177,7 @@ def test_that_liggghts_and_pfc_get_mass_and_inertia_of_the_union(dataset: Datase
     assert found is not None
     assert float(found.group(1)) == pytest.approx(1.0)
     assert sorted(float(found.group(k)) for k in (2, 3, 4)) == pytest.approx(elbow_moments())
-    assert not trimesh.load_mesh(folder / "meshes" / "shape_00.stl").is_convex
+    assert not trimesh.load_mesh(folder / "meshes" / "shape_00_elbow.stl").is_convex
 
 
 def test_that_lammps_gives_clumps_the_mass_and_inertia_of_their_union(

@@ -13,7 +13,7 @@ from scipy.stats import qmc
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import ExportOptions, write_export
+from regolith_studio.dataset.export import ExportOptions, shape_names, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.multisphere import (
     COUNTS,
@@ -79,7 +79,7 @@ def test_that_half_spaces_intersect_to_volume_one_about_the_origin(dataset: Data
 def test_that_hoomd_gets_the_vertices_of_the_same_solid(dataset: Dataset, tmp_path: Path) -> None:
     folder = exported(dataset, "hoomd", tmp_path / "x")
     content = json.loads((folder / "type_shapes.json").read_text())
-    assert content["types"] == ["shape_00", "shape_01", "shape_02"]
+    assert content["types"] == ["shape_00_grain_0", "shape_01_grain_1", "shape_02_grain_2"]
     for shape, moments in zip(content["type_shapes"], content["moments"], strict=True):
         assert (shape["type"], shape["rounding_radius"]) == ("ConvexPolyhedron", 0.0)
         hull = trimesh.convex.convex_hull(np.array(shape["vertices"]))
@@ -154,7 +154,7 @@ def test_that_rockable_shapes_keep_their_facets_planes_and_mass_data(
 ) -> None:
     folder = exported(dataset, "rockable", tmp_path / "x")
     shapes = read_shp((folder / "shapes.shp").read_text())
-    assert [shape["name"] for shape in shapes] == [["shape_00"], ["shape_01"], ["shape_02"]]
+    assert [shape["name"] for shape in shapes] == [[name] for name in shape_names(dataset)]
     for shape, one in zip(shapes, dataset.representatives, strict=True):
         corners, radius = shape["nv"], float(shape["radius"][0])
         assert len(shape["nf"]) == one.shape.n_facets
@@ -367,12 +367,12 @@ def test_that_the_stated_volume_of_the_spheres_agrees_with_monte_carlo(
 def test_that_gltf_shows_every_particle_where_it_is_in_metres(dataset: Dataset, tmp_path: Path) -> None:
     folder = exported(dataset, "gltf", tmp_path / "x")
     scene = trimesh.load_scene(folder / "particles.glb")
-    bodies = pack_on_lattice(dataset, OPTIONS)
+    bodies, names = pack_on_lattice(dataset, OPTIONS), shape_names(dataset)
     assert len(scene.geometry) == 3
     assert len(scene.graph.nodes_geometry) == len(bodies)
     for index in range(len(bodies)):
         transform, geometry = scene.graph[f"particle_{index:06d}"]
-        assert geometry == f"shape_{bodies.class_index[index]:02d}"
+        assert geometry == names[bodies.class_index[index]]
         placed = scene.geometry[geometry].copy()
         placed.merge_vertices(merge_norm=True)
         placed.apply_transform(transform)

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import NOTES, ExportOptions, write_export
+from regolith_studio.dataset.export import NOTES, ExportOptions, shape_names, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.sampling import pack_on_lattice
 from regolith_studio.errors import DatasetError
@@ -124,8 +124,8 @@ def test_that_pfc_imports_each_polyhedron_and_gives_its_template_the_same_mass_p
 def test_that_edem_gets_closed_convex_bodies_of_volume_one_in_their_principal_axes(
     dataset: Dataset, exports: dict[str, Path]
 ) -> None:
-    for index in range(len(dataset)):
-        body = trimesh.load_mesh(exports["edem"] / "meshes" / f"shape_{index:02d}.stl")
+    for name in shape_names(dataset):
+        body = trimesh.load_mesh(exports["edem"] / "meshes" / f"{name}.stl")
         assert body.is_watertight
         assert body.convex_hull.volume == pytest.approx(body.volume, rel=1e-5)
         assert body.volume == pytest.approx(1.0, rel=1e-5)

@@ -18,6 +18,7 @@ from regolith_studio.dataset.folder_io import (
     StoredShape,
     dataset_hash,
     read_dataset,
+    read_document,
     stored_shape,
     write_dataset,
     write_stored,
@@ -84,9 +85,9 @@ def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) 
     assert list(contents(folder)) == [
         "README.txt",
         "dataset.json",
-        "meshes/particle_0000.stl",
-        "meshes/particle_0001.stl",
-        "meshes/particle_0002.stl",
+        "meshes/grain-0.stl",
+        "meshes/grain-1.stl",
+        "meshes/grain-2.stl",
     ]
     document = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
     assert document["schema_version"] == 4
@@ -97,11 +98,40 @@ def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) 
     assert "volume 1" in (folder / "README.txt").read_text(encoding="utf-8")
 
 
+def test_that_files_are_named_after_particles_whatever_their_names_hold(tmp_path: Path) -> None:
+    names = ["Körnung 3/a", "grain", "GRAIN", "con", "..", "one.part1", "a\nb:c", "x" * 300]
+    pairs = [(Particle(name, entry(0)[0].mesh), entry(0)[1]) for name in names]
+    folder = write_dataset(tmp_path / "set", build_dataset(pairs))
+    found = [record.mesh.file for record in read_document(folder).representatives]
+    assert found == [
+        f"meshes/{name}.stl"
+        for name in ("Körnung 3_a", "grain", "GRAIN_2", "con_", "_", "one_part1", "a_b_c", "x" * 100)
+    ]
+    assert validate_dataset(folder) == []
+    assert [each.name for each in read_dataset(folder).representatives] == [*names[:2], "GRAIN_2", *names[3:]]
+    write_dataset(folder, build_dataset(pairs[:1]))
+    assert [path.name for path in (folder / "meshes").iterdir()] == ["Körnung 3_a.stl"]
+
+
+def test_that_a_dataset_with_numbered_files_is_read_and_replaced(tmp_path: Path, make_dataset) -> None:
+    """Their names are those of an earlier program, or of another one."""
+    folder = write_dataset(tmp_path / "set", make_dataset(2))
+    text = (folder / "dataset.json").read_text(encoding="utf-8")
+    for number in range(2):
+        text = text.replace(f"meshes/grain-{number}.stl", f"meshes/particle_000{number}.stl")
+        (folder / "meshes" / f"grain-{number}.stl").rename(folder / "meshes" / f"particle_000{number}.stl")
+    (folder / "dataset.json").write_text(text, encoding="utf-8")
+    assert validate_dataset(folder) == []
+    assert len(read_dataset(folder)) == 2
+    write_dataset(folder, make_dataset(1))
+    assert [path.name for path in (folder / "meshes").iterdir()] == ["grain-0.stl"]
+
+
 def test_that_a_stranger_reads_closed_convex_meshes_of_unit_volume(tmp_path: Path, make_dataset) -> None:
     dataset = make_dataset()
     folder = write_dataset(tmp_path / "set", dataset)
-    for index, representative in enumerate(dataset.representatives):
-        mesh = trimesh.load_mesh(folder / "meshes" / f"particle_{index:04d}.stl")
+    for representative in dataset.representatives:
+        mesh = trimesh.load_mesh(folder / "meshes" / f"{representative.name}.stl")
         assert mesh.is_watertight
         assert mesh.is_winding_consistent
         assert mesh.volume == pytest.approx(1.0, abs=1e-6)

@@ -94,7 +94,7 @@ BROKEN = {
         set_at(*FIRST, "mesh", "file", "meshes/a.stl\n"),
         "representatives[0].mesh.file",
     ),
-    "same mesh twice": (set_at(*FIRST, "mesh", "file", "meshes/PARTICLE_0001.stl"), "mesh files"),
+    "same mesh twice": (set_at(*FIRST, "mesh", "file", "meshes/GRAIN-1.stl"), "mesh files"),
     "wrong hash": (set_at(*FIRST, "mesh", "sha256", "0" * 64), "is not the file that dataset.json describes"),
     "no hash": (set_at(*FIRST, "mesh", "sha256", "abc"), "representatives[0].mesh.sha256"),
     "other version": (set_at("schema_version", 2), "schema version 2"),
@@ -167,12 +167,12 @@ def test_that_bytes_which_are_no_text_are_refused(folder: Path) -> None:
 
 def test_that_a_missing_folder_and_missing_files_are_named(folder: Path, tmp_path: Path) -> None:
     assert "nowhere" in refused(tmp_path / "nowhere")
-    (folder / "meshes" / "particle_0001.stl").unlink()
-    assert "particle_0001.stl cannot be read" in refused(folder)
+    (folder / "meshes" / "grain-1.stl").unlink()
+    assert "grain-1.stl cannot be read" in refused(folder)
 
 
 def test_that_a_mesh_behind_a_link_out_of_the_folder_is_refused(folder: Path, tmp_path: Path) -> None:
-    mesh = folder / "meshes" / "particle_0000.stl"
+    mesh = folder / "meshes" / "grain-0.stl"
     mesh.rename(tmp_path / "outside.stl")
     mesh.symlink_to(tmp_path / "outside.stl")
     assert "outside the dataset's folder" in refused(folder)
@@ -185,7 +185,7 @@ def test_that_huge_files_are_not_read(folder: Path) -> None:
 
 def put_mesh(folder: Path, mesh: Mesh) -> None:
     content = stl_bytes(mesh.triangles, "test")
-    (folder / "meshes" / "particle_0000.stl").write_bytes(content)
+    (folder / "meshes" / "grain-0.stl").write_bytes(content)
     edit(folder, set_at(*FIRST, "mesh", "sha256", hashlib.sha256(content).hexdigest()))
 
 
@@ -209,7 +209,7 @@ def test_that_validation_finds_what_is_wrong_with_a_mesh(folder: Path, change, p
 
 def test_that_validation_finds_stl_that_is_none(folder: Path) -> None:
     content = b"solid x\nendsolid x\n"
-    (folder / "meshes" / "particle_0000.stl").write_bytes(content)
+    (folder / "meshes" / "grain-0.stl").write_bytes(content)
     edit(folder, set_at(*FIRST, "mesh", "sha256", hashlib.sha256(content).hexdigest()))
     assert any("no complete binary STL" in sentence for sentence in validate_dataset(folder))
 

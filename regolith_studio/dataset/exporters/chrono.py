@@ -12,7 +12,7 @@ from regolith_studio.messages import N_
 
 _NOTE = b"""meshes/*.obj are closed, outward, of volume 1, centroid at the origin, principal axes x, y, z.
 A particle of scale s (particles.json, metres) at density rho has mass rho s^3 and principal moments
-rho s^5 moments. DEM-Engine: mesh = solver.LoadMeshType("meshes/shape_00.obj", material);
+rho s^5 moments. DEM-Engine: mesh = solver.LoadMeshType("meshes/SHAPE.obj", material);
 mesh.SetMass(..), mesh.SetMOI(..), mesh.Scale(s). Chrono: ChTriangleMeshConnected::CreateFromWavefrontFile.
 Of a compound the mesh is the surface of the union, volume and moments are those of the union, and 'parts'
 names a mesh for each convex part in the same frame, for collision shapes of Chrono that are convex hulls.
@@ -80,7 +80,7 @@ EXPORTER = Exporter(
         N_("elastic constants, friction"),
     ),
     loses=(N_("polygonal facets: they are cut into triangles"), N_("surface energy (JKR)")),
-    load_command='solver.LoadMeshType("{folder}/meshes/shape_00.obj", material)',
+    load_command='solver.LoadMeshType("{folder}/meshes/{shape}.obj", material)',
     files=_files,
     convex_only="",
 )

@@ -28,6 +28,6 @@ EXPORTER = Exporter(
     units=N_("shapes of volume 1; diameters in micrometres"),
     carries=(N_("shapes as triangles"), N_("class weights by number and mass, sizes (sizes.csv)")),
     loses=(N_("polygonal facets: they are cut into triangles"), N_("contact parameters")),
-    load_command="file {folder}/meshes/shape_00.stl",
+    load_command="file {folder}/meshes/{shape}.stl",
     files=_files,
 )

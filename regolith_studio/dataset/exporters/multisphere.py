@@ -67,7 +67,7 @@ EXPORTER = Exporter(
         N_("true moments of inertia (fit.csv)"),
     ),
     loses=(N_("flat facets and edges"), N_("contact parameters")),
-    load_command="file {folder}/spheres/shape_00.txt",
+    load_command="file {folder}/spheres/{shape}.txt",
     files=_files,
     convex_only="",
     alters=N_("overlapping spheres stand for each polyhedron; facets become bumpy, corners round."),
