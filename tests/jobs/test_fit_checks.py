@@ -13,7 +13,7 @@ from regolith_studio.steps import result_of
 
 def bumpy(amplitude: float, degree: int) -> Mesh:
     """A sphere with waves that harmonics below `degree` do not have."""
-    sphere = icosphere(5)
+    sphere = icosphere(4)
     x, y = sphere.vertices[:, 0], sphere.vertices[:, 1]
     waves = np.real((x + 1j * y) ** degree)
     return Mesh(sphere.vertices * (1 + amplitude * waves)[:, None], sphere.faces)

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ SHAPE = (9, 10, 11)
 EDGES = {"z": 5.0, "y": 2.0, "x": 1.5, "c": 1.0, "t": 1.0}
 VERSIONS = {"0.4": 2, "0.5": 3}
 Document = dict[str, Any]
+Write = Callable[[Path, dict[str, Path]], None]
+"""Writes a broken image to a path, from the whole ones of each version."""
 
 
 def multiscales(axes: str, levels: int, unit: str | None = "micrometer") -> list[Document]:
@@ -170,39 +173,39 @@ def test_that_pieces_end_where_deep_layers_do(monkeypatch: pytest.MonkeyPatch) -
     assert list(deep.pieces(0, 16)) == [(0, 3), (3, 6), (6, 7), (7, 10), (10, 13), (13, 14), (14, 16)]
 
 
-def changed(version: str, file: str, change: Callable[[Any], object]) -> Callable[[Path], None]:
+def changed(version: str, file: str, change: Callable[[Any], object]) -> Write:
     """An image with other metadata."""
 
-    def write(path: Path) -> None:
-        document = json.loads((ome_zarr(path, version) / file).read_text())
+    def write(path: Path, whole: dict[str, Path]) -> None:
+        document = json.loads((Path(shutil.copytree(whole[version], path)) / file).read_text())
         change(document)
         (path / file).write_text(json.dumps(document))
 
     return write
 
 
-def replaced(version: str, file: str, data: bytes | None) -> Callable[[Path], None]:
+def replaced(version: str, file: str, data: bytes | None) -> Write:
     """An image of which one file holds something else, or is not there."""
 
-    def write(path: Path) -> None:
-        (ome_zarr(path, version) / file).unlink()
+    def write(path: Path, whole: dict[str, Path]) -> None:
+        (Path(shutil.copytree(whole[version], path)) / file).unlink()
         if data is not None:
             (path / file).write_bytes(data)
 
     return write
 
 
-def linked(file: str) -> Callable[[Path], None]:
-    def write(path: Path) -> None:
+def linked(file: str) -> Write:
+    def write(path: Path, whole: dict[str, Path]) -> None:
         target = path.with_name("elsewhere")
-        target.write_bytes((ome_zarr(path) / file).read_bytes())
+        target.write_bytes((Path(shutil.copytree(whole["0.4"], path)) / file).read_bytes())
         (path / file).unlink()
         (path / file).symlink_to(target)
 
     return write
 
 
-def bad_images() -> Iterator[tuple[Callable[[Path], object], str]]:
+def bad_images() -> Iterator[tuple[Write, str]]:
     for version, file in (("0.4", ".zattrs"), ("0.5", "zarr.json")):
         for data in (b"", b"{", b"[]", b"\xff" * 9, b"[" * 100_000):
             yield replaced(version, file, data), "holds no metadata"
@@ -259,11 +262,12 @@ def bad_images() -> Iterator[tuple[Callable[[Path], object], str]]:
 
 
 def test_that_each_broken_image_is_refused_with_the_sentence_of_its_kind(tmp_path: Path) -> None:
+    whole = {version: ome_zarr(tmp_path / f"whole-{version}.zarr", version) for version in VERSIONS}
     corpus = list(bad_images())
     assert len(corpus) >= 40
     for number, (write, pattern) in enumerate(corpus):
         path = tmp_path / f"{number}.zarr"
-        write(path)
+        write(path, whole)
         with pytest.raises(FileError) as caught:
             read_volume(path, voxel_size=1.0, kind="grey"), pytest.fail(f"{number}: {pattern}")
         check_sentence(str(caught.value))
