@@ -275,7 +275,7 @@ def run(
     single: SingleRunOptions,
     json: Json = False,
 ) -> None:
-    """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
+    """Simulate the lifting cylinder with particles of a dataset and measure the heap (section 2.6)."""
     done = single.simulate(dataset, output, how.request(cohesion=cohesion, **single.case))
     print_result(done.document, run_in_words(done.document), json)
 

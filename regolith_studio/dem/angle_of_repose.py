@@ -24,7 +24,7 @@ COARSE_PILE = Message(
     ),
     count=Number(RELIABLE_N, ","),
 )
-"""Said of smaller piles, before a run and with the angle."""
+"""Said of smaller heaps, before a run and with the angle."""
 LEFT_OUT = N_("Left out: {reason}")
 CONVEX = N_("Convex flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.")
 CONCAVE = N_("Concave flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.")
@@ -68,7 +68,7 @@ class ReposeMeasurement:
     cut_shift
         Largest change of the angle when the lower cut is a third lower or higher.
     n_particles, mean_diameter, height, width, base
-        Of the pile; `height` and `width` averaged over the sections, `base` is the level of the plate.
+        Of the heap; `height` and `width` averaged over the sections, `base` is the level of the plate.
     settings
         Of the evaluation.
     warnings
@@ -106,7 +106,7 @@ def measure_repose(
     settings: EvaluationSettings | None = None,
     base: float | None = None,
 ) -> ReposeMeasurement:
-    """Evaluate the surface of a pile at rest.
+    """Evaluate the surface of a heap at rest.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def check_number(n: int, settings: EvaluationSettings) -> None:
     if n < settings.min_particles:
         raise NotAPileError(
             Message(
-                N_("{count} particles are too few for a pile; at least {needed} are needed."),
+                N_("{count} particles are too few for a heap; at least {needed} are needed."),
                 count=n,
                 needed=settings.min_particles,
             ),

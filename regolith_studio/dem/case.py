@@ -270,14 +270,15 @@ def _compounds(dataset: Dataset) -> dict[str, Any]:
 def _check_room(prepared: PreparedCase) -> None:
     test, mean = prepared.case.test, prepared.mean_diameter
     widest = float(prepared.diameters.max())
+    vessel = "cylinder" if prepared.case.drum is None else "drum"
     if test.diameter < max(MIN_DIAMETERS_ACROSS * mean, 1.5 * widest):
         raise InputError(
-            f"The cylinder is {1e3 * test.diameter:.3g} mm wide, but the particles are {1e3 * mean:.3g} mm "
-            f"in the mean and up to {1e3 * widest:.3g} mm; take more particles, less mass, a wider cylinder."
+            f"The {vessel} is {1e3 * test.diameter:.3g} mm wide, but the particles are {1e3 * mean:.3g} mm "
+            f"in the mean and up to {1e3 * widest:.3g} mm; take more particles, less mass, a wider {vessel}."
         )
     if prepared.fill_height > test.height:
         raise InputError(
-            f"{1e3 * prepared.mass:.3g} g fill the cylinder to {1e2 * prepared.fill_height:.3g} cm, but it "
+            f"{1e3 * prepared.mass:.3g} g fill the {vessel} to {1e2 * prepared.fill_height:.3g} cm, but it "
             f"is only {1e2 * test.height:.3g} cm high."
         )
     share = prepared.fill_height / test.height
@@ -372,7 +373,11 @@ def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> lis
     sentences: list[str] = [scale]
     across = test.diameter / mean
     if across < 20:
-        narrow = N_("The cylinder is only {across} particles wide; walls and single particles matter.")
+        narrow = (
+            N_("The cylinder is only {across} particles wide; walls and single particles matter.")
+            if prepared.case.drum is None
+            else N_("The drum is only {across} particles wide; walls and single particles matter.")
+        )
         sentences.append(Message(narrow, across=Number(across, ".1f")))
     if len(prepared) < RELIABLE_N and prepared.case.drum is None:
         sentences.append(COARSE_PILE)

@@ -106,6 +106,19 @@ def calibration_steps(request: ReposeCalibrationRequest, folder: Path) -> Steps:
     return calibration
 
 
+def kept_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
+    """The result of the runs that are in `folder` already, as :class:`ReposeCalibration`."""
+    yield Started(N_("Calibration"))
+    datasets = _by_hash(request.datasets)
+    calibration = ReposeCalibration.begin(_parameters(request), request.targets)
+    for number in range(request.max_runs):
+        run = _earlier_run(request, datasets, folder, number)
+        if run is None:
+            break
+        calibration = calibration.with_run(run)
+    return calibration
+
+
 def locked_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
     """:func:`calibration_steps` in a folder that no other process writes to meanwhile."""
     with output_lock(folder):

@@ -271,7 +271,7 @@ def preview_repose(dataset_folder: Path, request: ReposeRequest) -> Steps:
 
 
 def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:
-    """The angle of a pile once more, with other choices; returns the measurement or the refusal."""
+    """The angle of a heap once more, with other choices; returns the measurement or the refusal."""
     yield Started(N_("Measuring"))
     try:
         return measure_repose(pile.points, pile.diameters, evaluation)

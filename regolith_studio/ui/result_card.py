@@ -132,7 +132,7 @@ class ResultView(QFrame):
         super().__init__()
         self.setObjectName(name)
         self.setProperty("role", "card")
-        self._texts, self._lead, self._record = (start, again or start), lead, ResultRecord()
+        self._start, self._again, self._lead, self._record = start, again, lead, ResultRecord()
         self._clock, self._progress, self._stopping = TaskClock(), "", False
         self._problem = ""
         self.figures = tuple(QLabel("–") for _ in captions)
@@ -198,17 +198,18 @@ class ResultView(QFrame):
         self._name_button()
 
     def set_start(self, text: str) -> None:
-        """Set the text of the button without a result."""
-        self._texts = (text, self._texts[1])
+        """Set the text of the button without a result, and with one if there is none for that."""
+        self._start = text
         self._name_button()
 
     def _name_button(self) -> None:
         state = self._record.state
-        start = self._texts[0 if state in (ResultState.NONE, ResultState.FAILED) else 1]
+        texts = self._start, self._again or self._start
+        start = texts[state not in (ResultState.NONE, ResultState.FAILED)]
         running = state is ResultState.RUNNING
         stops = tr("Stop"), tr("Stopping …")
         widest = self.button.minimumWidth()  # of all its texts, so that it is in its place for the next click
-        for text in (*self._texts, *stops, stops[self._stopping] if running else start):
+        for text in (*texts, *stops, stops[self._stopping] if running else start):
             self.button.setText(text)
             widest = max(widest, self.button.sizeHint().width())
         self.button.setMinimumWidth(widest)

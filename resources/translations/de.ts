@@ -256,7 +256,7 @@
         <translation>0 für die Anzahl mit dem kleinsten Bayes-Informationskriterium.</translation>
     </message>
     <message>
-        <source>0: whole pile</source>
+        <source>0: whole heap</source>
         <translation>0: der ganze Kegel</translation>
     </message>
     <message>
@@ -1056,6 +1056,10 @@
         <translation>Repräsentanten werden gewählt</translation>
     </message>
     <message>
+        <source>Chosen here; a dataset that is made later does not replace it.</source>
+        <translation>Hier gewählt; ein später erzeugter Datensatz ersetzt ihn nicht.</translation>
+    </message>
+    <message>
         <source>Chosen weights</source>
         <translation>Gewählte Gewichte</translation>
     </message>
@@ -1514,6 +1518,10 @@
     <message>
         <source>Dataset</source>
         <translation>Datensatz</translation>
+    </message>
+    <message>
+        <source>Dataset {folder}</source>
+        <translation>Datensatz {folder}</translation>
     </message>
     <message>
         <source>Datasets (dataset.json)</source>
@@ -2176,7 +2184,7 @@
         <translation>Füllen</translation>
     </message>
     <message>
-        <source>Fill a cylinder with the particles of a dataset, lift it, measure the pile</source>
+        <source>Fill a cylinder with the particles of a dataset, lift it, measure the heap</source>
         <translation>Einen Zylinder mit den Partikeln eines Datensatzes füllen, ihn heben, den Schüttkegel vermessen</translation>
     </message>
     <message>
@@ -2900,6 +2908,10 @@
         <translation>Die Deskriptoren einzuhalten kostet Überdeckung: Die Jaccard-Distanz ist {kept}; mit der Überdeckung allein wäre sie {free}. Die Vorlage „Form zuerst“ lässt die Sphärizität frei.</translation>
     </message>
     <message>
+        <source>Kept if equal, else new</source>
+        <translation>Vorhandene, wenn gleich, sonst neue</translation>
+    </message>
+    <message>
         <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
         <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
     </message>
@@ -3328,7 +3340,7 @@
         <translation>Positionen vermessen</translation>
     </message>
     <message>
-        <source>Measure the pile of another program</source>
+        <source>Measure the heap of another program</source>
         <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
     </message>
     <message>
@@ -3616,6 +3628,10 @@
         <translation>Weder der Schnitt x-z noch der Schnitt y-z hat zwei gerade Flanken.</translation>
     </message>
     <message>
+        <source>New</source>
+        <translation>Neu</translation>
+    </message>
+    <message>
         <source>New keys of the chosen command</source>
         <translation>Neue Tasten des gewählten Befehls</translation>
     </message>
@@ -3890,6 +3906,10 @@
     <message>
         <source>Of this program: outer size instead of volume, since a convex body cannot have both</source>
         <translation>Von diesem Programm: äußere Größe statt Volumen, da ein konvexer Körper nicht beides haben kann</translation>
+    </message>
+    <message>
+        <source>Of {run}</source>
+        <translation>Von {run}</translation>
     </message>
     <message>
         <source>On this computer or on a cluster</source>
@@ -4940,10 +4960,6 @@
         <translation>Führen Sie einen Versuch durch oder öffnen Sie Positionen, um den Schnitt zu sehen.</translation>
     </message>
     <message>
-        <source>Run again</source>
-        <translation>Erneut ausführen</translation>
-    </message>
-    <message>
         <source>Run as a &amp;batch …</source>
         <translation>Als S&amp;tapel ausführen …</translation>
     </message>
@@ -5000,8 +5016,8 @@
         <translation>Läufe je Wert, mit anderen Startwerten</translation>
     </message>
     <message>
-        <source>Runs that ended in a pile are compared here.</source>
-        <translation>Hier werden Läufe verglichen, die mit einer Schüttung endeten.</translation>
+        <source>Runs with an angle are compared here.</source>
+        <translation>Hier werden Läufe mit einem Winkel verglichen.</translation>
     </message>
     <message>
         <source>Runs, tables and figure are kept in {folder}.</source>
@@ -6064,6 +6080,10 @@
         <translation>Der Datensatz ist gültig.</translation>
     </message>
     <message>
+        <source>The dataset that was made or opened last</source>
+        <translation>Der zuletzt erzeugte oder geöffnete Datensatz</translation>
+    </message>
+    <message>
         <source>The dataset&apos;s polyhedra</source>
         <translation>Polyeder des Datensatzes</translation>
     </message>
@@ -6074,6 +6094,10 @@
     <message>
         <source>The draws are off: {descriptor} by {ratio} times the sampling noise. {remedy}</source>
         <translation>Die Ziehungen weichen ab: {descriptor} um das {ratio}-Fache des Stichprobenrauschens. {remedy}</translation>
+    </message>
+    <message>
+        <source>The drum is only {across} particles wide; walls and single particles matter.</source>
+        <translation>Die Trommel ist nur {across} Partikel breit; Wände und einzelne Partikel fallen ins Gewicht.</translation>
     </message>
     <message>
         <source>The energy rose by {gain} m g d per particle without external work.</source>
@@ -6284,7 +6308,7 @@
         <translation>Die Partikel sind verstreut: Nur {share} % von ihnen liegen in der Schüttung.</translation>
     </message>
     <message>
-        <source>The particles form a layer {height} mean diameters high; a pile has at least {needed}.</source>
+        <source>The particles form a layer {height} mean diameters high; a heap has at least {needed}.</source>
         <translation>Die Partikel bilden eine Schicht von {height} mittleren Durchmessern Höhe; ein Schüttkegel hat mindestens {needed}.</translation>
     </message>
     <message>
@@ -6378,6 +6402,10 @@
     <message>
         <source>The section at {azimuth} degrees is no pile: two straight flanks explain only {share} % of the variance of its surface.</source>
         <translation>Der Schnitt bei {azimuth} Grad ist kein Schüttkegel: Zwei gerade Flanken erklären nur {share} % der Varianz seiner Oberfläche.</translation>
+    </message>
+    <message>
+        <source>The section of a measured heap is shown here.</source>
+        <translation>Hier erscheint der Schnitt durch einen vermessenen Schüttkegel.</translation>
     </message>
     <message>
         <source>The series of a fit has no random numbers.</source>
@@ -7744,10 +7772,6 @@
         <translation>sich schneidende Dreiecke</translation>
     </message>
     <message>
-        <source>kept or new</source>
-        <translation>vorhandene oder neue</translation>
-    </message>
-    <message>
         <source>kernel</source>
         <translation>Kerndichte</translation>
     </message>
@@ -7944,10 +7968,6 @@
         <translation>fast ein Ellipsoid</translation>
     </message>
     <message>
-        <source>new</source>
-        <translation>neu</translation>
-    </message>
-    <message>
         <source>next run at {next:.3g}</source>
         <translation>nächster Lauf bei {next:.3g}</translation>
     </message>
@@ -8034,10 +8054,6 @@
     <message>
         <source>number</source>
         <translation>Anzahl</translation>
-    </message>
-    <message>
-        <source>of {run}</source>
-        <translation>von {run}</translation>
     </message>
     <message>
         <source>one body of several convex parts, with mass and inertia of their union</source>
@@ -8628,6 +8644,10 @@
         <translation>z, x, y: wie MATLAB HDF5 schreibt</translation>
     </message>
     <message>
+        <source>{angle:.1f}° ± {error:.1f}° wanted</source>
+        <translation>{angle:.1f}° ± {error:.1f}° gewünscht</translation>
+    </message>
+    <message>
         <source>{at:,} of {total:,}</source>
         <translation>{at:,} von {total:,}</translation>
     </message>
@@ -8784,6 +8804,10 @@
         <translation>{count} von {total} Partikeln gemessen</translation>
     </message>
     <message>
+        <source>{count} of {total} runs</source>
+        <translation>{count} von {total} Läufen</translation>
+    </message>
+    <message>
         <source>{count} of {total} runs formed a heap without a measurable angle.</source>
         <translation>{count} von {total} Läufen ergaben eine Schüttung ohne messbaren Winkel.</translation>
     </message>
@@ -8804,7 +8828,7 @@
         <translation>{count} Partikel sind offen.</translation>
     </message>
     <message>
-        <source>{count} particles are too few for a pile; at least {needed} are needed.</source>
+        <source>{count} particles are too few for a heap; at least {needed} are needed.</source>
         <translation>{count} Partikel sind zu wenige für einen Schüttkegel; mindestens {needed} sind nötig.</translation>
     </message>
     <message>

@@ -52,7 +52,7 @@ def test_that_a_recipe_gives_the_particles_of_its_inputs(command, grains: Path, 
 def test_that_a_heap_of_too_few_particles_is_bad_use(command, grains: Path, tmp_path: Path) -> None:
     done = command("report", grains, "-o", tmp_path / "out", "--heap", 10)
     assert done.code == 2
-    assert "too few for a pile" in done.err
+    assert "too few for a heap" in done.err
 
 
 def test_that_a_file_without_particles_is_one_sentence(command, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The evaluation of section 3.3 against cones of known angle and against what is no pile."""
+"""The evaluation of section 3.3 against cones of known angle and against what is no heap."""
 
 import dataclasses
 import pickle

@@ -102,5 +102,5 @@ def test_that_what_is_no_pile_is_one_sentence(tmp_path: Path, capsys: pytest.Cap
         )
     )
     assert run(["repose", "measure", str(tmp_path / "few.npz")]) == 1
-    assert capsys.readouterr().err.strip() == "5 particles are too few for a pile; at least 150 are needed."
+    assert capsys.readouterr().err.strip() == "5 particles are too few for a heap; at least 150 are needed."
     assert run(["repose", "measure", str(tmp_path / "absent.npz")]) == 1

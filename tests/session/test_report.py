@@ -253,7 +253,7 @@ def test_that_a_cube_shows_three_faces_from_any_corner_and_comes_back() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "wrong"),
-    [({"heap": 10}, "too few for a pile"), ({"l_max": 31}, "l_max"), ({"method": "magic"}, "magic")],
+    [({"heap": 10}, "too few for a heap"), ({"l_max": 31}, "l_max"), ({"method": "magic"}, "magic")],
 )
 def test_that_settings_that_cannot_work_are_refused_before_anything_is_computed(
     changes: dict[str, object], wrong: str

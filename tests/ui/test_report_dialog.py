@@ -99,7 +99,7 @@ def test_that_what_a_report_lacks_is_said_before_it_is_made(shown, tmp_path):
     assert not dialog.go.isEnabled()
     dialog = shown(ReportDialog(1, Choices(), tmp_path / "out"))
     dialog.restore_fields({"heap": 3})
-    assert "too few for a pile" in dialog.state.text()
+    assert "too few for a heap" in dialog.state.text()
     dialog.restore_fields({"heap": 0})
     assert dialog.go.isEnabled()
     dialog.folder.setValue(None)

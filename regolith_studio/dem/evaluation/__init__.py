@@ -1,6 +1,6 @@
-"""From particle positions to the surface of a pile and its slopes, as section 3.3 describes it.
+"""From particle positions to the surface of a heap and its slopes, as section 3.3 describes it.
 
-* :mod:`~regolith_studio.dem.evaluation.profile`: a vertical section and the surface of the pile in it.
+* :mod:`~regolith_studio.dem.evaluation.profile`: a vertical section and the surface of the heap in it.
 * :mod:`~regolith_studio.dem.evaluation.section`: the asymmetric and the symmetric triangle in one section.
 """
 
@@ -25,7 +25,7 @@ class EvaluationSettings:
     median_window
         Points of the rolling median, odd; 1 for none.
     cut_top, cut_bottom
-        Shares of the pile's height that are left out above and below (the paper: 0.15).
+        Shares of the heap's height that are left out above and below (the paper: 0.15).
     toe
         Minimum height of the lower cut: one layer of particles is no flank. 0 as in the paper.
     slab
@@ -41,7 +41,7 @@ class EvaluationSettings:
     min_particles
         Minimum number of particles of a pile.
     min_height
-        Minimum height of a pile; lower heaps are layers.
+        Minimum height of a heap; what is lower is a layer.
     confidence
         Of the interval.
 
@@ -57,7 +57,7 @@ class EvaluationSettings:
     cut_top: float = setting(0.15, N_("Upper cut"), minimum=0.0, maximum=0.45)
     cut_bottom: float = setting(0.15, N_("Lower cut"), minimum=0.0, maximum=0.45)
     toe: float = setting(1.5, N_("Minimum height of the cut, in mean d"), minimum=0.0, maximum=10.0)
-    slab: float = setting(0.0, N_("Slice, in mean d"), N_("0: whole pile"), minimum=0.0, maximum=1000.0)
+    slab: float = setting(0.0, N_("Slice, in mean d"), N_("0: whole heap"), minimum=0.0, maximum=1000.0)
     grain_correction: bool = setting(True, N_("Correct for grain size"), minimum=False, maximum=True)
     azimuths: int = setting(12, N_("Sections"), minimum=2, maximum=360)
     min_points: int = setting(4, N_("Points per flank"), minimum=3, maximum=1000)

@@ -26,7 +26,7 @@ class Discs:
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Surface of the pile on equally spaced vertical lines.
+    """Surface of the heap on equally spaced vertical lines.
 
     - ``u``: places of the lines, ascending, shape (m,).
     - ``raw``: top of the connected column above the base on each, 0 where there is none, shape (m,).

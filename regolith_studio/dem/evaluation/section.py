@@ -187,9 +187,9 @@ SOLID_FRACTION = 0.58
 
 
 def silhouette_deficit(u: FloatArray, fit: AsymmetricFit, mean_diameter: float) -> FloatArray:
-    """Mean height by which the surface is seen too low, because a pile consists of grains, shape (m,).
+    """Mean height by which the surface is seen too low, because a heap consists of grains, shape (m,).
 
-    The silhouette of a cone at the distance x from its axis is a single line on its surface. A pile has a
+    The silhouette of a cone at the distance x from its axis is a single line on its surface. A heap has a
     grain there only by chance, so the highest visible grain lies a little lower. Grains that reach up to less
     than delta below the silhouette have their centres in the volume
 
@@ -289,7 +289,7 @@ Status = Literal[
 
 
 class NotAPileError(InputError):
-    """The particles form no pile whose angle could be measured.
+    """The particles form no heap whose angle could be measured.
 
     ``sentence``: reason, for the user. ``status``: reason, for programs and tables.
 
@@ -426,7 +426,7 @@ def _check_shape(profile: Profile, mean_diameter: float, settings: EvaluationSet
     if layers < settings.min_height:
         raise NotAPileError(
             Message(
-                N_("The particles form a layer {height} mean diameters high; a pile has at least {needed}."),
+                N_("The particles form a layer {height} mean diameters high; a heap has at least {needed}."),
                 height=Number(layers, ".1f"),
                 needed=Number(settings.min_height, "g"),
             ),

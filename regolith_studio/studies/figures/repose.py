@@ -1,4 +1,4 @@
-"""Angle of repose: sections through a pile with the fitted flanks (Fig. 9), and angles against a value.
+"""Angle of repose: sections through a heap with the fitted flanks (Fig. 9), and angles against a value.
 
 Calibration: the runs against each parameter, its posterior density, and its interval after each run.
 

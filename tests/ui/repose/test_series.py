@@ -10,7 +10,7 @@ from regolith_studio.jobs.events import Progress
 from regolith_studio.studies.calibration import CalibrationParameter
 from regolith_studio.studies.repose import runs_from
 from regolith_studio.studies.repose_calibration import CalibrationRun, ReposeCalibration, angle_target
-from regolith_studio.ui.result_card import ResultState
+from regolith_studio.ui.result_card import ResultRecord, ResultState
 from tests.ui.repose.conftest import small
 
 
@@ -87,6 +87,7 @@ def test_that_a_calibration_shows_runs_density_and_the_next_run(page):
     assert last.x[int(np.argmax(last.y))] == pytest.approx(0.6, abs=0.1)
     assert float(record.values[0]) == pytest.approx(0.6, abs=0.1)
     assert record.made_from.startswith("4 runs; next run at")
+    assert record.made_from.endswith("22.0° ± 0.5° wanted")
 
 
 def test_that_a_calibration_without_a_usable_run_shows_no_value(page):
@@ -139,6 +140,14 @@ def test_that_a_calibration_runs_and_goes_on_in_its_folder(page, dataset, wait):
     wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
     assert (folder / "run_01" / "repose.json").stat().st_mtime_ns == before
     assert json.loads((folder / "calibration.json").read_text())["targets"][0]["value"] == 27.0
+    kept = json.loads(json.dumps(page.state()))
+    kept["calibration"]["runs"] = 3
+    page.calibration.show_calibration(None)
+    page.calibration.card.show_record(ResultRecord())
+    page.restore(kept)
+    wait(lambda: "2 of 3 runs;" in page.calibration.card.sentence.text())
+    assert page.calibration.card.button.text() == "Resume"
+    assert page.calibration.has_runs
 
 
 def test_that_a_calibration_says_what_it_lacks(page, dataset):

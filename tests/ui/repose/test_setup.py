@@ -2,11 +2,14 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFileDialog, QLabel
 
+from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import DRUM, ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import check_number
 from regolith_studio.dem.evaluation import EvaluationSettings
@@ -18,6 +21,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.ui.pages.repose.setup import CaseScale, SetupPanel, engine_table
 from regolith_studio.ui.widgets.forms import ParameterForm
+from tests.dem.conftest import box_dataset
 
 
 def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
@@ -45,6 +49,56 @@ def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
     wait(lambda: page.setup.problem.text() != "")
     assert "wider cylinder" in page.setup.problem.text()
     assert not page.angle.button.isEnabled()
+
+
+def test_that_the_page_follows_the_dataset_made_last_until_one_is_chosen_by_hand(
+    page, dataset, tmp_path, monkeypatch, wait
+):
+    session, setup = page._context.session, page.setup
+
+    def make(name):
+        session.dataset_folder = write_dataset(tmp_path / name, box_dataset())
+        wait(lambda: page._context.bindings.idle)
+
+    make("first")
+    make("second")
+    assert setup.dataset == tmp_path / "second" == Path(setup.dataset_label.text())
+    assert "made or opened last" in setup.dataset_note.text()
+    wait(lambda: "Not run yet" in page.angle.sentence.text())
+    assert str(tmp_path / "second") in page.angle.sentence.text()
+    kept = json.loads(json.dumps(page.state()))
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(dataset))
+    page.open_dataset()
+    make("third")
+    assert setup.dataset == dataset
+    assert "Chosen here" in setup.dataset_note.text()
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path / "third"))
+    page.open_dataset()
+    make("fourth")
+    assert setup.dataset == tmp_path / "fourth"
+    page.restore(kept)
+    session.dataset_folder = tmp_path / "second"  # as the page Dataset restores it
+    wait(lambda: page._context.bindings.idle)
+    assert (setup.dataset, setup.by_hand) == (tmp_path / "second", False)
+
+
+def test_that_a_dataset_written_again_into_its_folder_is_drawn_again(page, tmp_path, wait):
+    session = page._context.session
+    session.dataset_folder = write_dataset(tmp_path / "set", box_dataset())
+    wait(lambda: page._prepared is not None)
+    drawn = page._prepared
+    session.dataset_folder = tmp_path / "set"  # nothing is new
+    wait(lambda: page._context.bindings.idle)
+    assert page._prepared is drawn
+    session.dataset_folder = write_dataset(tmp_path / "set", box_dataset())
+    wait(lambda: page._prepared not in (drawn, None))
+
+
+def test_that_no_sentence_of_the_card_is_repeated_in_the_section(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    wait(lambda: "Not run yet" in page.angle.sentence.text())
+    texts = [each.text() for each in page.findChildren(QLabel) if each.isVisibleTo(page)]
+    assert sum("Not run yet" in text for text in texts) == 1
 
 
 def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_before(

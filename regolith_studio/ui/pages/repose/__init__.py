@@ -1,4 +1,4 @@
-"""Page "Angle of repose": set up the lifting cylinder, watch it, measure the pile, compare runs."""
+"""Page "Angle of repose": set up the lifting cylinder, watch it, measure the heap, compare runs."""
 
 from regolith_studio.messages import N_
 from regolith_studio.session.file_kinds import FileKind
@@ -9,7 +9,7 @@ PAGE = Page(
     title=N_("Angle of repose"),
     icon="page_repose",
     order=70,
-    tip=N_("Fill a cylinder with the particles of a dataset, lift it, measure the pile"),
+    tip=N_("Fill a cylinder with the particles of a dataset, lift it, measure the heap"),
     make="regolith_studio.ui.pages.repose.page:ReposePage",
     opens=(FileKind.POSITIONS,),
     actions=(
@@ -31,7 +31,7 @@ PAGE = Page(
         ActionSpec("play", N_("&Play the run")),
         ActionSpec(BREAK),
         ActionSpec(
-            "open_positions", N_("&Measure positions …"), tip=N_("Measure the pile of another program")
+            "open_positions", N_("&Measure positions …"), tip=N_("Measure the heap of another program")
         ),
         ActionSpec("export_run", N_("&Export figure and JSON …"), icon="export"),
         ActionSpec(

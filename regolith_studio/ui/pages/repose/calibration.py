@@ -15,7 +15,11 @@ from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, locked_calibration
+from regolith_studio.jobs.repose_calibration import (
+    ReposeCalibrationRequest,
+    kept_calibration,
+    locked_calibration,
+)
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import (
     SHAPE_KEYS,
@@ -33,7 +37,7 @@ from regolith_studio.ui.layout import equal_parts, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.runs import explanation, interval_bars
 from regolith_studio.ui.pages.repose.setup import SetupPanel
-from regolith_studio.ui.result_card import ResultRecord, ResultView, RunController
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.fields import DecimalField, NumbersLine, choice, decimal_field, whole_field
@@ -209,14 +213,20 @@ class CalibrationPanel(RunPanel):
             (dataset,), {key: (ends[0], ends[1])}, tuple(targets), request, self.runs.value()
         )
 
-    def show_calibration(self, calibration: ReposeCalibration | None) -> ResultRecord:
-        """Show what is known after other runs; returns the record of the card."""
+    @property
+    def has_runs(self) -> bool:
+        return self._calibration is not None and bool(self._calibration.runs)
+
+    def show_calibration(
+        self, calibration: ReposeCalibration | None, request: ReposeCalibrationRequest | None = None
+    ) -> ResultRecord:
+        """Show what is known after other runs of a request; returns the record of the card."""
         self._calibration = calibration
         self._draw()
         if calibration is None:
             return ResultRecord()
         self.card.caption(0, tr(PARAMETERS[calibration.parameters[0].name][0]))
-        return _record(calibration)
+        return _record(calibration, request)
 
     def _draw(self) -> None:
         calibration = self._calibration
@@ -242,23 +252,48 @@ class CalibrationController(SeriesController):
         self._panel, self._setup, self._folder = panel, setup, folder
 
     def _start(self) -> None:
-        wanted = self._panel.request(self._setup.dataset, self._setup.request_of_series())
-        folder = self._folder() / "studies" / folder_name(wanted)
+        wanted, folder = self._request()
         self._panel.show_calibration(None)
-        self.run.start(
-            tr("Angle of repose: calibration"),
-            Job(locked_calibration, (wanted, folder)),
-            self._panel.show_calibration,
-            tr("Every run is kept in {folder}.", folder=folder),
-        )
+        note = tr("Every run is kept in {folder}.", folder=folder)
+
+        def show(calibration: ReposeCalibration) -> ResultRecord:
+            record = self._panel.show_calibration(calibration, wanted)
+            return replace(record, note=record.note or note)
+
+        job = Job(locked_calibration, (wanted, folder))
+        self.run.start(tr("Angle of repose: calibration"), job, show, note)
+
+    def show_kept(self) -> None:
+        """Show what the runs that are kept from an earlier session say."""
+        try:
+            wanted, folder = self._request()
+        except RegolithError:
+            return  # its dataset is gone, and the runs are of no other
+
+        def show(calibration: ReposeCalibration) -> None:
+            record = self._panel.show_calibration(calibration, wanted)
+            state = ResultState.CURRENT if len(calibration.runs) == wanted.max_runs else ResultState.STOPPED
+            self._panel.card.show_record(replace(record, state=state))
+
+        job = Job(kept_calibration, (wanted, folder))
+        self._context.start(tr("Angle of repose: calibration"), job, show, queue="calibration")
+
+    def _request(self) -> tuple[ReposeCalibrationRequest, Path]:
+        """What the form asks for, and the folder of its runs."""
+        wanted = self._panel.request(self._setup.dataset, self._setup.request_of_series())
+        return wanted, self._folder() / "studies" / folder_name(wanted)
 
 
-def _record(calibration: ReposeCalibration) -> ResultRecord:
-    """What is known of the parameter, the next run, and warnings."""
+def _record(calibration: ReposeCalibration, request: ReposeCalibrationRequest | None) -> ResultRecord:
+    """What is known of the parameter, from which runs, what is wanted, the next run, and warnings."""
     runs = len(calibration.runs)
     following = tr("next run at {next:.3g}", next=calibration.next_values[0])
     counted = tr_count(N_("1 run"), N_("{count} runs"), runs)
-    made_from = f"{counted}; {following}" if runs else ""
+    if request is not None and runs < request.max_runs:
+        counted = tr("{count} of {total} runs", count=runs, total=request.max_runs)
+    angle = next(each for each in calibration.targets if each.name == ANGLE)
+    wanted = tr("{angle:.1f}° ± {error:.1f}° wanted", angle=angle.value, error=angle.error)
+    made_from = "; ".join((counted, following, wanted))
     values: tuple[str, ...] = ()
     if calibration.is_informed(0):
         low, high = calibration.posterior.intervals[0]

@@ -316,7 +316,7 @@ class HeapSections(QWidget):
         row.addStretch(1)
         vbox(row, (self.plot, 1), (self.course, 1), parent=self)
         self.azimuth.currentIndexChanged.connect(lambda *_: self._show_chosen())
-        self.show_nothing(tr("Run a test or open positions to see its section."))
+        self.show_nothing()
 
     def show_heap(self, pile: ParticleState, measured: ReposeMeasurement | NotAPileError) -> None:
         """Show other sections, at the azimuth that is chosen."""
@@ -331,9 +331,9 @@ class HeapSections(QWidget):
         self._show_chosen()
 
     def show_drum(self, measurement: Mapping[str, Any]) -> None:
-        """Show how the surface of a drum rises and falls, or why it has no angle."""
+        """Show how the surface of a drum rises and falls, if it has an angle."""
         if measurement["angle_deg"] is None:
-            self.show_nothing(translate(measurement["reason"]))
+            self.show_nothing()
             return
         times = tuple(measurement["times_s"])
         curves = [PlotCurve(tr("Surface"), self.course.theme.muted, times, tuple(measurement["angles_deg"]))]
@@ -348,10 +348,11 @@ class HeapSections(QWidget):
         self.plot.hide()
         self.course.show()
 
-    def show_nothing(self, sentence: str) -> None:
+    def show_nothing(self) -> None:
+        """Show what will be seen here; why it is not is on the card."""
         self._sections = {}
         self._offer(False)
-        self.plot.show_nothing(sentence)
+        self.plot.show_nothing(tr("The section of a measured heap is shown here."))
 
     def _offer(self, visible: bool) -> None:
         self.course.hide()

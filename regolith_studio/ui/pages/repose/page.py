@@ -9,6 +9,7 @@ from platformdirs import user_data_path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFileDialog
 
+from regolith_studio.dataset.folder_io import DOCUMENT as DATASET
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase, scaling_report, with_number
@@ -81,13 +82,14 @@ class ReposePage(PageWidget):
         self._prepared: tuple[PreparedCase, ReposeRequest] | None = None
         self._live_scene: tuple[Sequence[Sequence[FloatArray]], bool, LiftingCylinderTest] | None = None
         self._live_pile: ParticleState | None = None
+        self._followed: tuple[Path, int] | None = None
 
     def build(self) -> None:
         self.setup = SetupPanel()
         self.player = RunPlayer(self._context.views)
         captions = (tr("Angle of repose"), interval_caption(None))
         self.angle = ResultView(
-            "repose_angle", captions, tr("Run the test"), tr("Run again"), ANGLE_SIZE, ANGLE_LINES
+            "repose_angle", captions, tr("Run the test"), lead=ANGLE_SIZE, lines=ANGLE_LINES
         )
         self.limits = LimitsStrip()
         self.sections = HeapSections()
@@ -145,12 +147,21 @@ class ReposePage(PageWidget):
     def state(self) -> dict[str, Any]:
         shown = self._shown_run
         run = {"folder": str(shown), "sha256": _hash_of_run(shown)} if shown else None
-        return self.settings() | {"shown": run}
+        followed = self._followed and str(self._followed[0])
+        return self.settings() | {
+            "shown": run,
+            "followed": followed,
+            "calibrated": self.calibration.has_runs,
+        }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         for name, panel in (("setup", self.setup), ("study", self.study), ("calibration", self.calibration)):
             if isinstance(state.get(name), Mapping):
                 panel.restore(state[name])
+        if isinstance(followed := state.get("followed"), str):  # which is not made anew by being opened
+            self._followed = (Path(followed), _time_of(Path(followed)))
+        if state.get("calibrated") is True:
+            self.calibrations.show_kept()
         if isinstance(shown := state.get("shown"), Mapping):
             self._restore_run(Path(str(shown.get("folder"))), shown.get("sha256"))
 
@@ -183,7 +194,8 @@ class ReposePage(PageWidget):
         if name := QFileDialog.getExistingDirectory(
             self, tr("Open a dataset"), str(self.setup.dataset or "")
         ):
-            self.setup.set_dataset(Path(name))
+            folder = Path(name)
+            self.setup.set_dataset(folder, by_hand=folder != self._context.session.dataset_folder)
 
     def make_dataset(self) -> None:
         """Build a dataset of the open particles in the folder of runs."""
@@ -311,8 +323,12 @@ class ReposePage(PageWidget):
     # --- set-up and preview --------------------------------------------------------------------
 
     def _take_dataset(self) -> None:
+        """Follow the dataset that was made or opened last, unless the user has chosen one here."""
         written = self._context.session.dataset_folder
-        if written is not None and self.setup.dataset is None:
+        if written is None:
+            return
+        last, self._followed = self._followed, (written, _time_of(written))
+        if self._followed != last and not self.setup.by_hand:
             self.setup.set_dataset(written)
 
     def _ask_preview(self) -> None:
@@ -379,7 +395,7 @@ class ReposePage(PageWidget):
             time=duration_text(seconds),
             longer=duration_text(2 * seconds),
         )
-        self._show_nothing(note)
+        self._show_nothing(note, made_from=tr("Dataset {folder}", folder=self.setup.dataset))
         self.player.set_scene(*scene)
         self.player.show_moment(
             pile,
@@ -499,14 +515,16 @@ class ReposePage(PageWidget):
         self._show_card(heap_record(measured, *self._origin, self._notes))
         self.sections.show_heap(self._pile, measured)
 
-    def _show_nothing(self, sentence: str, state: ResultState = ResultState.NONE) -> None:
+    def _show_nothing(
+        self, sentence: str, state: ResultState = ResultState.NONE, made_from: str = ""
+    ) -> None:
         """Show that there is no measurement of what is seen, and why."""
         self._context.stop(MEASURE)
         self._pile = self._measured = self._shown_run = self._drum = None
         self.angle.caption(0, tr("Angle of repose"))
         self.angle.caption(1, interval_caption(None))
-        self._show_card(ResultRecord(state=state, note=sentence))
-        self.sections.show_nothing(sentence)
+        self._show_card(ResultRecord((), made_from, state=state, note=sentence))
+        self.sections.show_nothing()
 
     def _show_card(self, record: ResultRecord) -> None:
         self.angle.show_record(record)
@@ -550,6 +568,14 @@ class ReposePage(PageWidget):
         while (self._folder / f"{stem}-{number:03d}").exists():
             number += 1
         return self._folder / f"{stem}-{number:03d}"
+
+
+def _time_of(folder: Path) -> int:
+    """When the dataset in a folder was written, in nanoseconds; 0 where there is none."""
+    try:
+        return (folder / DATASET).stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 def _hash_of_run(folder: Path) -> str:

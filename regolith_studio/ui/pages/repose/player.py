@@ -174,7 +174,7 @@ SETTLE = 300
 
 
 class RunPlayer(StepPlayer):
-    """Shows piles and replays runs."""
+    """Shows heaps and replays runs."""
 
     def __init__(self, views: str) -> None:
         super().__init__("repose_time", tr("Time of the run"), FRAME)

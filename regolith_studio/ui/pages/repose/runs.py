@@ -62,7 +62,7 @@ class RunsPanel(QWidget):
         entries = [(path, label) for label, path in AGAINST.items()]
         self.against = choice("repose_against", tr("Compare the angle against"), entries)
         self.plot = CurvePlot(
-            tr("Static friction"), tr("Angle [°]"), tr("Runs that ended in a pile are compared here.")
+            tr("Static friction"), tr("Angle [°]"), tr("Runs with an angle are compared here.")
         )
         right = QWidget()
         vbox(self.against, (self.plot, 1), parent=right, margins=(0, 4, 0, 0))

@@ -186,6 +186,7 @@ OF_DRUM = {
 }
 """Values of the usual drum and of the lifting cylinder, where they differ."""
 KEPT = "kept"
+FILLINGS = {N_("Kept if equal, else new"): KEPT, N_("New"): ""}
 COHESION = {
     N_("None"): "none",
     N_("As given (experimental)"): "given",
@@ -206,7 +207,9 @@ class SetupPanel(QWidget):
         super().__init__()
         self.setObjectName("repose_setup")
         self._dataset: Path | None = None
+        self._by_hand = False
         self.dataset_label = ElidedLabel(tr("No dataset yet"), elide=Qt.TextElideMode.ElideMiddle)
+        self.dataset_note = hint_label()
         self.open_button = _button(tr("Open …"), "repose_open", tr("Choose a dataset folder"))
         self.sample_button = _button(
             tr("From open particles"), "repose_sample", tr("Coarsen the open particles first")
@@ -230,7 +233,9 @@ class SetupPanel(QWidget):
             tr("Gravity of"),
         )
         self._runs: tuple[Path, ...] = ()
-        self.filling = _choice({N_("kept or new"): KEPT, N_("new"): ""}, "repose_filling", tr("Filling"))
+        self.filling = _choice(
+            {N_("Kept if equal, else new"): KEPT, N_("New"): ""}, "repose_filling", tr("Filling")
+        )
         self.filling.setToolTip(
             tr(
                 "A filling of an earlier run is used again where dataset, number, cylinder, seed, friction "
@@ -252,6 +257,7 @@ class SetupPanel(QWidget):
         self.scaling_report.setObjectName("repose_consequences")
         self.problem = hint_label(role="warning")
         self.problem.hide()
+        self.dataset_note.hide()
         self._place()
         self._connect()
 
@@ -263,9 +269,20 @@ class SetupPanel(QWidget):
     def dataset(self) -> Path | None:
         return self._dataset
 
-    def set_dataset(self, folder: Path | None) -> None:
-        self._dataset = folder
+    @property
+    def by_hand(self) -> bool:
+        """Whether the user has chosen the dataset among all folders, so that no later one replaces it."""
+        return self._by_hand and self._dataset is not None
+
+    def set_dataset(self, folder: Path | None, by_hand: bool = False) -> None:
+        self._dataset, self._by_hand = folder, by_hand
         self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
+        self.dataset_note.setText(
+            tr("Chosen here; a dataset that is made later does not replace it.")
+            if self.by_hand
+            else tr("The dataset that was made or opened last")
+        )
+        self.dataset_note.setVisible(folder is not None)
         self.valueChanged.emit()
 
     def set_fillings(self, folders: Sequence[Path]) -> None:
@@ -276,7 +293,7 @@ class SetupPanel(QWidget):
             while self.filling.count() > 2:
                 self.filling.removeItem(2)
             for folder in folders:
-                self.filling.addItem(tr("of {run}", run=folder.name), str(folder))
+                self.filling.addItem(tr("Of {run}", run=folder.name), str(folder))
             self.filling.setCurrentIndex(max(0, self.filling.findData(chosen)))
 
     def request(self) -> ReposeRequest:
@@ -351,6 +368,7 @@ class SetupPanel(QWidget):
             "evaluation": self.evaluation.value(),
             "numerics": {key: form.value() for key, form in self._numerics.items()},
             "dataset": str(self._dataset) if self._dataset else None,
+            "dataset_by_hand": self._by_hand,
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -376,7 +394,7 @@ class SetupPanel(QWidget):
             self._select(box, state, name)
         folder = state.get("dataset")
         if folder and Path(str(folder)).is_dir():
-            self.set_dataset(Path(str(folder)))
+            self.set_dataset(Path(str(folder)), state.get("dataset_by_hand") is True)
 
     @staticmethod
     def _select(box: QComboBox, state: Mapping[str, Any], name: str) -> None:
@@ -402,6 +420,7 @@ class SetupPanel(QWidget):
         case = _column(
             heading(tr("Dataset")),
             self.dataset_label,
+            self.dataset_note,
             _row(self.open_button, self.sample_button),
             heading(tr("Particles")),
             _row(*presets),
