@@ -126,6 +126,14 @@ def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
     assert "damping tsuji" in text
 
 
+@pytest.mark.parametrize("restitution", [0.0, 1.0])
+def test_that_lammps_is_given_the_restitution_that_is_set(boxes: Dataset, restitution: float) -> None:
+    contact = ContactParameters(restitution=restitution)
+    prepared, settings = prepare(boxes, replace(SMALL, contact=contact)), LammpsSettings()
+    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0)
+    assert set(re.findall(r"hertz/material 40000.0 (\S+) 0.2", text)) == {str(restitution)}
+
+
 def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> None:
     rows = ["2 1 2 3 1 0 0 0", "1 4 5 6 0 1 0 0"]
     head = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ENTRIES", "2", "ITEM: ENTRIES"]

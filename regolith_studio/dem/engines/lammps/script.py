@@ -281,6 +281,8 @@ def script(
         f"variable up equal {plan.raised!r}+(step-v_begin)*{plan.step!r}*{plan.speed!r}\n"
         f"{tube} move NULL NULL v_up\n{hold}\nrun {lift}\nunfix tube\n"
     )
+    # Neighbours are listed to 0.12 d beyond contact: 100 clumps take 10.4, 10.5, 17.8 and 30.5 s of processor
+    # time with 0.05, 0.12, 0.3 and 0.6.
     # The box grows along x and y (boundary s): a rounded clump without rolling resistance rolls on at
     # constant speed and would leave a fixed one.
     return f"""units lj
@@ -316,7 +318,7 @@ def _contact(prepared: PreparedCase, settings: LammpsSettings, friction: float) 
     """Normal, tangential and rolling law with their numbers."""
     contact = prepared.case.contact
     young, poisson = stiffness(prepared, settings), contact.poissons_ratio
-    bounce = min(max(contact.restitution, 0.05), 0.98)
+    bounce = contact.restitution
     weight = contact.density * prepared.case.test.gravity * prepared.mean_diameter**2
     energy = prepared.surface_energy / weight / 2  # two surfaces of LAMMPS make the w of 3/2 pi w R*
     normal, damping = f"hertz/material {young!r} {bounce!r} {poisson!r}", "tsuji"
