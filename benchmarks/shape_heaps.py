@@ -124,9 +124,9 @@ def differences(heaps: Sequence[dict[str, Any]]) -> dict[str, list[float | int |
         step = ChainStep(question, "", (base, *(case for case in table if case != base)))
         if {changed, base} <= set(table):
             budget = AngleBudget((step,), table[base], {(question, case): table[case] for case in table})
-            found = next(effect for effect in budget.effects if effect.level == changed)
-            numbers = [round(each, 2) for each in (found.change, found.low, found.high)]
-            rows[question] = [found.n, *numbers, found.heaps_needed]
+            for found in (effect for effect in budget.effects if effect.level == changed):
+                numbers = [round(each, 2) for each in (found.change, found.low, found.high)]
+                rows[question] = [found.n, *numbers, found.heaps_needed]
     return rows
 
 
