@@ -13,6 +13,7 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
 from regolith_studio.dem.lifting_cylinder import SubstepSettings
 from regolith_studio.dem.verification.bodies import cuboid, lowest_heights, random_polyhedron, scene
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 
 
@@ -84,3 +85,15 @@ def test_that_the_kinetic_energy_is_that_of_spinning_bodies() -> None:
     spins = Rotation.from_quat(turns).apply(fast[:, 3:], inverse=True)
     expected = 0.5 * np.einsum("ni,ij,nj->", spins, inertia, spins)
     assert solver.energies()[1] == pytest.approx(expected, rel=1e-3)
+
+
+def test_that_vertices_which_single_precision_cannot_tell_apart_are_one() -> None:
+    """Four planes of a coarsened particle may meet in two vertices 1e-10 apart."""
+    shape = random_polyhedron(3)
+    prepared = scene([shape], 0.5, 1)
+    (vertices,) = prepared.shapes
+    doubled = np.vstack([vertices, vertices[0] + 1e-10])
+    solver = Box3dSolver(replace(prepared, shapes=(doubled,)), SubstepSettings())
+    assert solver.masses == pytest.approx([np.pi / 6])
+    with pytest.raises(InputError, match="makes no hull of a polyhedron of 8 vertices"):
+        Box3dSolver(replace(prepared, shapes=(1e-6 * cuboid(1, 1, 1).vertices,)), SubstepSettings())

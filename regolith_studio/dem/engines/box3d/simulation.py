@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from robox3d._ffi import ffi, lib, shim  # the package's layer of Box3D's own functions
+from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
@@ -103,7 +104,9 @@ ROLLING_RADIUS = 0.25
 LENGTH_UNIT = 0.2
 """Mean diameters that Box3D takes for a metre: bodies may overlap by half a hundredth of it, which its
 contacts need to persist from step to step."""
-# Box3D limits it to an eighth of the frequency of its substeps: 20 with the usual step, 80 with the smallest.
+# Box3D limits the frequency to an eighth of that of its substeps, which is 20 by default and 40 with half the
+# step. With a damping of 3 a stack of five cubes gains 1e-7 m g d of energy in 100 sqrt(d/g), with 1, 10 and
+# 30 it gains 3e-5, 4e-5 and 4e-4; in a fall a polyhedron gains 0.046, and 0.053, 0.045 and 0.055.
 CONTACT_HERTZ, CONTACT_DAMPING = 60.0, 3.0
 """Frequency and damping ratio with which overlaps are pushed apart."""
 RESTITUTION_SPEED = 0.1
@@ -354,10 +357,15 @@ class _Forms:
         return np.array([[getattr(each, way) for way in "xyz"] for each in (tensor.cx, tensor.cy, tensor.cz)])
 
 
+MAX_HULL_ERROR = 1e-4
+"""Part of its volume by which Box3D's hull of a polyhedron may differ. Vertices that single precision cannot
+tell apart become one."""
+
+
 def _hull(vertices: FloatArray) -> Any:
     points = ffi.new("b3Vec3[]", [tuple(map(float, each)) for each in vertices])
-    hull = lib.b3CreateHull(points, len(vertices), len(vertices))
-    if hull == ffi.NULL or hull.vertexCount != len(vertices):
+    hull, volume = lib.b3CreateHull(points, len(vertices), len(vertices)), ConvexHull(vertices).volume
+    if hull == ffi.NULL or abs(lib.b3ComputeHullMass(hull, 1.0).mass - volume) > MAX_HULL_ERROR * volume:
         raise InputError(
             f"Box3D makes no hull of a polyhedron of {len(vertices)} vertices; take another engine."
         )
