@@ -69,7 +69,7 @@ def fit_model(fits: Iterable[HarmonicFit], model: str = DEFAULT_MODEL, **setting
         Of :func:`fit_harmonics`, all with the same l_max, in micrometres; 20 or more are advised.
     model
         ``recombined``, ``sample_matched``, ``log_field``, ``hull_field``, ``gaussian_field`` (the paper's),
-        ``gaussian_mixture``, ``mixture_field``, or one of another package.
+        ``gaussian_mixture``, or one of another package.
     settings
         Fields of the model's ``Settings`` that differ from the default, ``l_max`` among them.
 

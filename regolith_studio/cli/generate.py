@@ -46,8 +46,7 @@ Model = Annotated[
     str,
     typer.Option(
         "--model",
-        help="gaussian_field gaussian_mixture hull_field log_field mixture_field recombined (default) "
-        "sample_matched.",
+        help="gaussian_field gaussian_mixture hull_field log_field recombined (default) sample_matched.",
         metavar="NAME",
         show_default=False,
     ),

@@ -448,10 +448,6 @@
         <translation>Eine Mischung von Komponenten, jede mit eigenen Größen und eigenem Spektrum, im Radius selbst.</translation>
     </message>
     <message>
-        <source>A mixture of components, each with its own sizes and spectrum; their number by the Bayesian information criterion.</source>
-        <translation>Eine Mischung von Komponenten, jede mit eigenen Größen und eigenem Spektrum; ihre Anzahl nach dem Bayes-Informationskriterium.</translation>
-    </message>
-    <message>
         <source>A of the hull / A of its ellipsoid (after Kuo and Freeman)</source>
         <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
     </message>
@@ -3498,10 +3494,6 @@
     <message>
         <source>Mixture of Gaussian fields</source>
         <translation>Mischung von Gaußfeldern</translation>
-    </message>
-    <message>
-        <source>Mixture of fields</source>
-        <translation>Mischung von Feldern</translation>
     </message>
     <message>
         <source>Model</source>

@@ -167,7 +167,7 @@ def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, t
 
 @pytest.mark.slow
 def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: Path) -> None:
-    wanted = ("--model", "mixture_field", "--set", "n_components=2", "--format", "npz", "--l-max", 3)
+    wanted = ("--model", "gaussian_mixture", "--set", "n_components=2", "--format", "npz", "--l-max", 3)
     result = command("generate", fit, "-n", 40, "-o", tmp_path / "v", *wanted, "--names", "basalt, glass")
     assert result.code == 0, result.err
     groups = [row["group"] for row in csv_rows(tmp_path / "v" / "particles.csv")]
@@ -189,7 +189,7 @@ def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: 
         (("--l-max", 40), 2, "less than or equal to 30"),
         (("--format", "obj"), 2, "must be stl or npz"),
         (("--names", "a,b", "--model", "gaussian_field", "--l-max", 3), 2, "Only a mixture"),
-        (("--model", "mixture_field", "--names", "a,b,c,d,e,f,g,h,i,j", "--l-max", 3), 2, "names, got 10"),
+        (("--model", "gaussian_mixture", "--names", "a,b,c,d,e,f,g,h,i,j", "--l-max", 3), 2, "names, got 10"),
         (("--l-max", 9), 1, "expanded to l_max = 8"),
         (("--level", 99), 2, "level"),
     ],

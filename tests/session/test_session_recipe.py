@@ -243,7 +243,6 @@ def test_that_particles_of_an_edited_card_are_the_same_in_a_run(session: Session
         pytest.param("recombined", marks=pytest.mark.slow),
         pytest.param("sample_matched", marks=pytest.mark.slow),
         "gaussian_field",
-        pytest.param("mixture_field", marks=pytest.mark.slow),
     ],
 )
 def test_that_particles_of_a_fitted_model_are_the_same_in_a_run(

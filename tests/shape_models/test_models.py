@@ -30,7 +30,6 @@ def test_that_the_models_are_found_by_themselves() -> None:
         "gaussian_mixture",
         "hull_field",
         "log_field",
-        "mixture_field",
         "recombined",
         "sample_matched",
     }
@@ -130,7 +129,6 @@ def test_that_a_model_read_back_draws_the_same_bytes(
         ("gaussian_field", "mean", 1e300),
         ("gaussian_field", "mean", 10**400),
         ("hull_field", "faceting", 1e300),
-        ("mixture_field", "spectra", [[0.0, 1e6, 0.0, 0.0, 0.0]]),
     ],
 )
 def test_that_a_model_whose_particles_overflow_is_refused_in_one_sentence(

@@ -38,7 +38,7 @@ from regolith_studio.studies.population_tables import (
 )
 from tests.steps import played
 
-SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
+SMALL_MODELS = ("gaussian_field", "gaussian_mixture", "sample_matched")
 SMALL = {"l_max": 4, "n_draws": 20, "n_splits": 2, "n_repeats": 2, "level": 2}
 
 

@@ -227,8 +227,8 @@ def test_that_a_model_of_another_package_is_fitted_shown_and_drawn(opened, monke
 @pytest.mark.slow
 def test_that_the_parts_of_a_mixture_are_named(page):
     take(page, rough_sample())
-    page.source.model.setCurrentIndex(page.source.model.findData("mixture_field"))
-    page.source.forms["mixture_field"].setValue({"n_components": 2})
+    page.source.model.setCurrentIndex(page.source.model.findData("gaussian_mixture"))
+    page.source.forms["gaussian_mixture"].setValue({"n_components": 2})
     page.source.fit.click()
     assert page.drawing.names.text() == "part 1, part 2"
     page.drawing.names.setText("basalt, glass")

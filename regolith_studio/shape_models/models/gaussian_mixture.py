@@ -2,14 +2,10 @@
 
 Each component is a field of :mod:`~regolith_studio.shape_models.models.gaussian_field`: c_00 is N(mu_k,
 s_k^2), c_lm is N(0, A_lk). The number of components is the one with the lowest information criterion of
-Bayes. Draws whose radius is not positive are rejected and counted; ``mixture_field`` is the same for ln r,
-where there are none.
+Bayes. Draws whose radius is not positive are rejected and counted.
 
-Mixtures of Gaussian fields by expectation and maximisation, with the number of components by Bayes'
-criterion.
-
-Of a particle only its size x_i (ln r_eq, or c_00 for fields in r) and the power P_l of each degree enter:
-directions within a degree are even in an isotropic field. ::
+It is fitted by expectation and maximisation. Of a particle only its size x_i = c_00 and the power P_l of each
+degree enter: directions within a degree are even in an isotropic field. ::
 
     ln p(i | k) = ln N(x_i; mu_k, s_k^2) - 1/2 sum over l of ((2 l + 1) ln A_lk + P_il / A_lk) + constant
 """
@@ -35,7 +31,7 @@ MAX_STEPS = 300
 TOLERANCE = 1e-7
 MIN_SHARE = 1e-3
 MIN_DEVIATION = 1e-3
-"""Of the size within a component; sizes are logarithms, or shares of their mean."""
+"""Of the size within a component, a share of the mean size."""
 
 
 @dataclass(frozen=True)
@@ -100,63 +96,6 @@ class Mixture:
         return np.asarray(np.log(self.weights) - 0.5 * (shape + far))
 
 
-class NamedComponents:
-    """Base of fitted mixtures: components with spectra and names."""
-
-    spectra: FloatArray
-    unit: str
-    bic: tuple[float, ...]
-    names: tuple[str, ...]
-    labels: IntArray | None
-
-    def check_components(self, k: int) -> None:
-        """Lock the spectra of `k` components and complete their names.
-
-        Raises InputError if a variance is negative, or there are not as many names as components.
-        """
-        spectra = locked_floats(self.spectra, (k, None), "spectra")
-        if not (spectra >= 0).all():
-            raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
-        object.__setattr__(self, "spectra", spectra)
-        object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        object.__setattr__(self, "names", component_names(self.names, k))
-
-    def stored_components(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-        """Plain values for JSON; the labels of the measured particles."""
-        values = {
-            "spectra": self.spectra.tolist(),
-            "unit": self.unit,
-            "bic": list(self.bic),
-            "names": list(self.names),
-        }
-        return values, {} if self.labels is None else {"labels": self.labels}
-
-    @property
-    def l_max(self) -> int:
-        """Degree of the particles."""
-        return int(self.spectra.shape[1]) - 1
-
-    @property
-    def n_components(self) -> int:
-        """Number of components."""
-        return len(self.spectra)
-
-    def renamed(self, names: Sequence[str]) -> Self:
-        """The same mixture with other names of its components.
-
-        Raises InputError if there are not as many names as parts.
-        """
-        return replace(self, names=tuple(names))  # type: ignore[type-var]
-
-
-def restored_components(
-    values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
-) -> tuple[FloatArray, str, tuple[float, ...], tuple[str, ...], IntArray | None]:
-    """Spectra, unit, criterion, names and labels from :meth:`NamedComponents.stored_components`."""
-    names, bic = tuple(values["names"]), tuple(values["bic"])
-    return values["spectra"], str(values["unit"]), bic, names, arrays.get("labels")
-
-
 def component_names(names: Sequence[str], k: int) -> tuple[str, ...]:
     """One name for each of `k` parts: those given, or "part 1", "part 2" and so on.
 
@@ -213,7 +152,7 @@ def _best_start(sizes: FloatArray, powers: FloatArray, k: int, settings: Mixture
 def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Generator) -> Mixture:
     """The mixture of `k` parts from one start by k-means++ on the sizes and the ln P_l.
 
-    ``sizes``: ln r_eq, or c_00 over its mean, shape (n,). ``powers``: sum of squares at each degree, shape
+    ``sizes``: c_00 over its mean, shape (n,). ``powers``: sum of squares at each degree, shape
     (n, l_max + 1).
     """
     # A degree without power in one component would have a variance of 0 and an infinite likelihood.
@@ -266,7 +205,7 @@ KEY = "gaussian_mixture"
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianMixture(NamedComponents, RejectionSampler):
+class GaussianMixture(RejectionSampler):
     """A fitted mixture, the component with the largest share first.
 
     - ``weights``: shares by number, before draws are thrown away, shape (k,).
@@ -293,13 +232,35 @@ class GaussianMixture(NamedComponents, RejectionSampler):
         k = len(self.weights)
         object.__setattr__(self, "weights", locked_floats(self.weights, (None,), "weights"))
         object.__setattr__(self, "means", locked_floats(self.means, (k,), "means"))
-        self.check_components(k)
+        spectra = locked_floats(self.spectra, (k, None), "spectra")
+        if not (spectra >= 0).all():
+            raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
+        object.__setattr__(self, "spectra", spectra)
+        object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
+        object.__setattr__(self, "names", component_names(self.names, k))
         if not ((self.weights >= 0).all() and self.weights.sum() > 0):
             raise InputError("Shares of a mixture must not be negative.")
 
     def __reduce__(self) -> tuple[Callable[..., "GaussianMixture"], tuple[Any, ...]]:
         fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
         return GaussianMixture, fields
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the particles."""
+        return int(self.spectra.shape[1]) - 1
+
+    @property
+    def n_components(self) -> int:
+        """Number of components."""
+        return len(self.weights)
+
+    def renamed(self, names: Sequence[str]) -> Self:
+        """The same mixture with other names of its components.
+
+        Raises InputError if there are not as many names as parts.
+        """
+        return replace(self, names=tuple(names))
 
     def relative_amplitudes(self) -> FloatArray:
         """Root of the mean over the components of A_lk / mu_k^2, shape (l_max,)."""
@@ -316,8 +277,15 @@ class GaussianMixture(NamedComponents, RejectionSampler):
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON; the labels of the measured particles."""
-        values, arrays = self.stored_components()
-        return {"weights": self.weights.tolist(), "means": self.means.tolist(), **values}, arrays
+        values = {
+            "weights": self.weights.tolist(),
+            "means": self.means.tolist(),
+            "spectra": self.spectra.tolist(),
+            "unit": self.unit,
+            "bic": list(self.bic),
+            "names": list(self.names),
+        }
+        return values, {} if self.labels is None else {"labels": self.labels}
 
 
 class GaussianMixtureModel:
@@ -345,11 +313,9 @@ class GaussianMixtureModel:
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> GaussianMixture:
         """The mixture from its stored values."""
-        return GaussianMixture(
-            values["weights"],
-            values["means"],
-            *restored_components(values, arrays),
-        )
+        numbers = (values["weights"], values["means"], values["spectra"])
+        names, bic = tuple(values["names"]), tuple(values["bic"])
+        return GaussianMixture(*numbers, str(values["unit"]), bic, names, arrays.get("labels"))
 
 
 MODEL = GaussianMixtureModel()
