@@ -113,7 +113,7 @@ def map_scan(
     output: Annotated[
         Path,
         output_option(
-            "File for the probability of grain, 0 to 255, as TIFF, NRRD, HDF5 or OME-Zarr.",
+            "File for the probability of grain, 0 to 255, as TIFF, NRRD or HDF5.",
             "FILE",
             claim_labels,
         ),
@@ -141,7 +141,7 @@ def painted_labels(
     classifier: ClassifierFile,
     output: Annotated[
         Path,
-        output_option("File for the painted voxels, as TIFF, NRRD, HDF5 or OME-Zarr.", "FILE", claim_labels),
+        output_option("File for the painted voxels, as TIFF, NRRD or HDF5.", "FILE", claim_labels),
     ],
     contents: VolumeOptions,
     json: Json = False,

@@ -293,7 +293,7 @@ def extract(
         Path | None,
         typer.Option(
             "--labels",
-            help="File for the volume of labels, as TIFF, NRRD, HDF5 or OME-Zarr by its suffix; a table of "
+            help="File for the volume of labels, as TIFF, NRRD or HDF5 by its suffix; a table of "
             "the labels is written beside it as CSV.",
             metavar="FILE",
             callback=claim_labels,

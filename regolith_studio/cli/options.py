@@ -196,17 +196,14 @@ def claim_file(context: typer.Context, path: Path | None) -> Path | None:
 def claim_labels(context: typer.Context, path: Path | None) -> Path | None:
     """The same for a label volume, whose suffix says the format."""
     if path is not None:
-        from regolith_studio.imaging.label_files import check_label_place, label_suffix
+        from regolith_studio.imaging.label_files import label_suffix
 
         with usage_errors():
-            suffix = label_suffix(path)
+            label_suffix(path)
         if not path.parent.is_dir():
             raise FileError(
                 f"There is no folder {path.parent} for the labels; name a file in one that is there."
             )
-        if suffix == ".zarr":
-            check_label_place(path)
-            return claim_folder(context, path)
     return claim_file(context, path)
 
 

@@ -1,4 +1,4 @@
-"""Volumes of labels or probabilities for other programs: TIFF, NRRD, HDF5, OME-Zarr, written slab by slab.
+"""Volumes of labels or probabilities for other programs: TIFF, NRRD, HDF5, written slab by slab.
 
 Each holds the edges of a voxel in micrometres and is compressed without loss; equal values give equal bytes.
 """
@@ -12,17 +12,14 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import InputError
 from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges
-from regolith_studio.io.atomic import staged_file, staged_folder
-from regolith_studio.io.own_files import json_bytes
+from regolith_studio.io.atomic import staged_file
 
 DATASETS = {"labels": "labels", "grey": "probability"}
 """The name of the volume in an HDF5 file, by its kind."""
 _BIG_TIFF_BYTES = 2**31
 _CHUNK = (8, 128, 128)
-_ZARR, _ZARR_CHUNK = ".zarr", (8, 256, 256)
-_LISTED = "labels"
 _LEVEL = 1
 """Of zlib: labels are constant over wide areas, where higher levels gain little."""
 
@@ -35,8 +32,7 @@ def write_label_file(path: Path, labels: SliceSource, highest: int) -> Iterator[
     ``path``: a name that ends in one of :data:`LABEL_SUFFIXES`; the file appears when it is complete.
     ``highest``: the highest label, by which voxels have 16 or 32 bits.
 
-    Raises InputError if the suffix is another. Raises FileError if the file cannot be written, or the folder
-    of an OME-Zarr is there and holds something else.
+    Raises InputError if the suffix is another. Raises FileError if the file cannot be written.
     """
     stored = np.dtype(np.uint16 if highest < 2**16 else np.uint32)
     return _write(path, labels, stored)
@@ -55,12 +51,6 @@ def _write(path: Path, labels: SliceSource, stored: np.dtype[Any]) -> Iterator[t
             slab = labels.read(first, stop)
             yield np.ascontiguousarray(np.maximum(slab, 0).astype(stored, copy=False).T)
 
-    if suffix == _ZARR:
-        check_label_place(path)
-        with staged_folder(path, _LISTED) as folder:
-            for done, _ in enumerate(_write_zarr(folder, slabs(), labels, stored), start=1):
-                yield done, len(ranges)
-        return
     with staged_file(path) as stream:
         for done, _ in enumerate(_WRITERS[suffix](stream, slabs(), labels, stored), start=1):
             yield done, len(ranges)
@@ -75,15 +65,6 @@ def label_suffix(path: Path) -> str:
     if suffix not in LABEL_SUFFIXES:
         raise InputError(f"Labels are written as {', '.join(LABEL_SUFFIXES)}, not as {path.name}.")
     return suffix
-
-
-def check_label_place(path: Path) -> None:
-    """Refuse a folder that holds anything but labels that were written before.
-
-    Raises FileError if the labels would be written into a folder of something else.
-    """
-    if path.is_dir() and any(path.iterdir()) and not (path / f"{_LISTED}.sha256").is_file():
-        raise FileError(f"The folder {path} holds no labels that were written here; choose another name.")
 
 
 def _write_tiff(
@@ -167,72 +148,6 @@ def _write_hdf5(
             yield
 
 
-def _write_zarr(folder: Path, slabs: _Slabs, labels: SliceSource, stored: np.dtype[Any]) -> Iterator[None]:
-    """OME-Zarr 0.4 (Zarr 2) of one level; chunks without a label are left out, as their fill value is 0.
-
-    Chunks are packed by gzip, which more implementations of Zarr 2 unpack than zlib.
-    """
-    shape = labels.shape[::-1]
-    chunks = tuple(min(edge, chunk) for edge, chunk in zip(shape, _ZARR_CHUNK, strict=True))
-    array = folder / "0"
-    array.mkdir()
-    (folder / ".zgroup").write_bytes(json_bytes({"zarr_format": 2}))
-    (folder / ".zattrs").write_bytes(json_bytes(_ngff_attributes(labels)))
-    described = {
-        "zarr_format": 2,
-        "shape": list(shape),
-        "chunks": list(chunks),
-        "dtype": stored.newbyteorder("<").str,
-        "compressor": {"id": "gzip", "level": _LEVEL},
-        "fill_value": 0,
-        "filters": None,
-        "order": "C",
-        "dimension_separator": "/",
-    }
-    (array / ".zarray").write_bytes(json_bytes(described))
-    kept, layer = np.empty((0, *shape[1:]), stored), 0
-    for slab in slabs:
-        kept = np.concatenate([kept, slab])
-        while len(kept) >= chunks[0]:
-            _write_chunks(array / str(layer), kept[: chunks[0]], chunks)
-            kept, layer = kept[chunks[0] :], layer + 1
-        yield
-    if len(kept):
-        _write_chunks(array / str(layer), kept, chunks)
-
-
-def _write_chunks(folder: Path, layer: NDArray[Any], chunks: tuple[int, ...]) -> None:
-    """The chunks of one layer, ``ROW/COLUMN`` each, filled up with zeros at the far faces."""
-    depth, high, wide = chunks
-    for row, y in enumerate(range(0, layer.shape[1], high)):
-        for column, x in enumerate(range(0, layer.shape[2], wide)):
-            part = layer[:, y : y + high, x : x + wide]
-            if not part.any():
-                continue
-            chunk = np.zeros((depth, high, wide), layer.dtype.newbyteorder("<"))
-            chunk[: part.shape[0], : part.shape[1], : part.shape[2]] = part
-            place = folder / str(row) / str(column)
-            place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_bytes(gzip.compress(chunk.tobytes(), _LEVEL, mtime=0))
-
-
-def _ngff_attributes(labels: SliceSource) -> dict[str, Any]:
-    """The metadata of NGFF 0.4: axes with unit, edges, and the place of the region in the whole volume."""
-    edges = np.asarray(labels.voxel_size, float)
-    moved = np.asarray(labels.origin, float) * edges
-    placed = [
-        {"type": "scale", "scale": edges[::-1].tolist()},
-        {"type": "translation", "translation": moved[::-1].tolist()},
-    ]
-    image = {
-        "version": "0.4",
-        "name": DATASETS[labels.kind],
-        "axes": [{"name": axis, "type": "space", "unit": "micrometer"} for axis in "zyx"],
-        "datasets": [{"path": "0", "coordinateTransformations": placed}],
-    }
-    return {"multiscales": [image]} | ({"image-label": {"version": "0.4"}} if labels.kind == "labels" else {})
-
-
 _WRITERS: dict[str, Callable[[IO[bytes], _Slabs, SliceSource, np.dtype[Any]], Iterator[None]]] = {
     ".tif": _write_tiff,
     ".tiff": _write_tiff,
@@ -240,4 +155,4 @@ _WRITERS: dict[str, Callable[[IO[bytes], _Slabs, SliceSource, np.dtype[Any]], It
     ".h5": _write_hdf5,
     ".hdf5": _write_hdf5,
 }
-LABEL_SUFFIXES = (*_WRITERS, _ZARR)
+LABEL_SUFFIXES = tuple(_WRITERS)
