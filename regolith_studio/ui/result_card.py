@@ -260,11 +260,11 @@ class ResultView(QFrame):
 
         Where three quarters of the usual width are not left beside its buttons, these come below.
         """
-        figure = self.figures[0].fontMetrics().horizontalAdvance(WIDEST_FIGURE) + 16
+        figures = sum(each.fontMetrics().horizontalAdvance(WIDEST_FIGURE) + 16 for each in self.figures)
         words = self.fontMetrics().horizontalAdvance("0" * SENTENCE_DIGITS)
         high = self.window().height() >= MIN_LINES * self.fontMetrics().height()
         cramped = width < self._outer_width() + self._grid.minimumSize().width() + words // 2
-        below = cramped or (high and width < len(self.figures) * figure + words)
+        below = cramped or (high and width < figures + words)
         column = bool(self._ends) and width - self._outer_width() < 3 * words // 4
         for layout, stacked in ((self._parts, below), (self._row, column)):
             direction = QBoxLayout.Direction.TopToBottom if stacked else QBoxLayout.Direction.LeftToRight

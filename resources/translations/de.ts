@@ -1480,6 +1480,10 @@
         <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z macht jede Änderung rückgängig, Strg+S speichert das Projekt. Der Rundgang steht im Menü Hilfe.</translation>
     </message>
     <message>
+        <source>Cumulative [%]</source>
+        <translation>Kumuliert [%]</translation>
+    </message>
+    <message>
         <source>Cut all views</source>
         <translation>Alle Ansichten schneiden</translation>
     </message>
@@ -1846,6 +1850,10 @@
     <message>
         <source>Each term alone</source>
         <translation>Jeder Term allein</translation>
+    </message>
+    <message>
+        <source>Each usable run narrows it.</source>
+        <translation>Jeder brauchbare Lauf engt sie ein.</translation>
     </message>
     <message>
         <source>Each with {fineness}; method: {method} (see Explore).</source>
@@ -6324,10 +6332,6 @@
         <translation>Das Polyeder ist noch nicht fertig.</translation>
     </message>
     <message>
-        <source>The probability density of the parameter appears after the first usable run.</source>
-        <translation>Die Wahrscheinlichkeitsdichte des Parameters erscheint nach dem ersten verwendbaren Lauf.</translation>
-    </message>
-    <message>
         <source>The proposal, T(k) and the decision with their numbers</source>
         <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
     </message>
@@ -6956,8 +6960,8 @@
         <translation>Gewünschte Schüttdichte</translation>
     </message>
     <message>
-        <source>Wasserstein distance / standard deviation</source>
-        <translation>Wasserstein-Abstand / Standardabweichung</translation>
+        <source>Wasserstein distance / σ</source>
+        <translation>Wasserstein-Distanz / σ</translation>
     </message>
     <message>
         <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
@@ -9238,6 +9242,10 @@
     <message>
         <source>π^(1/3) (6V)^(2/3) / A (Wadell, true sphericity)</source>
         <translation>π^(1/3) (6V)^(2/3) / A (Wadell, wahre Sphärizität)</translation>
+    </message>
+    <message>
+        <source>σ: standard deviation of the population</source>
+        <translation>σ: Standardabweichung der Grundgesamtheit</translation>
     </message>
 </context>
 </TS>

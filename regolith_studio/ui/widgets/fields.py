@@ -169,6 +169,11 @@ class NumbersLine(QLineEdit):
         super().__init__()
         self.setValue(value)
 
+    def minimumSizeHint(self) -> QSize:
+        """Wide enough for a list of three numbers."""
+        least = super().minimumSizeHint()
+        return QSize(least.width() + self.fontMetrics().horizontalAdvance("0.2, 0.4, 0.8"), least.height())
+
     def value(self) -> str:
         """The list with decimal points, and commas between the numbers."""
         text = self.text()

@@ -105,6 +105,15 @@ def test_that_a_calibration_without_a_usable_run_shows_no_value(page):
     assert page.calibration.posterior.curves == ()
 
 
+def test_that_the_form_of_a_series_scrolls_before_its_fields_are_cut(page, app):
+    for place, panel in ((3, page.study), (4, page.calibration)):
+        page.tabs.setCurrentIndex(place)
+        page.resize(900, 420)
+        app.processEvents()
+        for field in panel._fields.values():
+            assert field.height() >= field.minimumSizeHint().height()
+
+
 @pytest.mark.parametrize(
     ("name", "job"), [("study", "run_repose_study"), ("calibration", "locked_calibration")]
 )

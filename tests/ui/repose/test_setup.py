@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QFileDialog, QLabel
 
 from regolith_studio.dataset.folder_io import write_dataset
@@ -19,7 +19,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import repose_jobs
-from regolith_studio.ui.pages.repose.setup import CaseScale, SetupPanel, engine_table
+from regolith_studio.ui.layout import Collapsible, scrolled_column
+from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
 from regolith_studio.ui.widgets.forms import ParameterForm
 from tests.dem.conftest import box_dataset
 
@@ -82,6 +83,28 @@ def test_that_the_page_follows_the_dataset_made_last_until_one_is_chosen_by_hand
     assert (setup.dataset, setup.by_hand) == (tmp_path / "second", False)
 
 
+def test_that_columns_of_the_set_up_come_below_each_other_where_there_is_no_room_for_both(shown, app):
+    panel = SetupPanel()
+    area = shown(scrolled_column([panel]))
+    for width, beside in ((1200, True), (420, False), (1200, True)):
+        area.resize(width, 700)
+        app.processEvents()
+        parts = [each for each in panel.findChildren(Collapsible) if each.isVisible()]
+        assert all(each.mapTo(area, each.rect().topRight()).x() < area.viewport().width() for each in parts)
+        assert (parts[0].mapTo(panel, QPoint()).x() > panel.seed.mapTo(panel, QPoint()).x()) is beside
+
+
+def test_that_limits_keep_their_texts_where_the_strip_is_narrow(shown, app):
+    strip = shown(LimitsStrip())
+    strip.show_scale(CaseScale(200, 5.8, 156.0), lambda _count: 3000.0)
+    for width, beside in ((1500, True), (900, False), (1500, True)):
+        strip.resize(width, strip.sizeHint().height())
+        app.processEvents()
+        text, button = strip.texts[0], strip.buttons[0]
+        assert text.fontMetrics().horizontalAdvance(text.text()) <= text.width()
+        assert (button.y() < text.geometry().bottom()) is beside
+
+
 def test_that_a_dataset_written_again_into_its_folder_is_drawn_again(page, tmp_path, wait):
     session = page._context.session
     session.dataset_folder = write_dataset(tmp_path / "set", box_dataset())
@@ -116,7 +139,9 @@ def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_b
     assert page.angle.button.isEnabled()
     assert len(page.player.pile) == 0
     assert placed == [300]
-    assert np.abs(page.player.frame.view.picture().astype(int) - filled).max() > 50
+    empty = page.player.frame.view.picture()
+    rows = min(len(empty), len(filled))  # buttons of the limits may have come below their texts
+    assert np.abs(empty[:rows].astype(int) - filled[:rows]).max() > 50
 
 
 def test_that_values_that_cannot_be_run_are_refused_in_the_form(page, dataset, wait):

@@ -135,11 +135,12 @@ class QualityPlot(CurvePlot):
         self._noise: float | None = None
         super().__init__(
             tr("Number of representatives"),
-            tr("Wasserstein distance / standard deviation"),
+            tr("Wasserstein distance / σ"),
             tr("Press Find representatives to plot the error against their number."),
             log_y=True,
         )
         self.setObjectName("dataset_quality")
+        self.axes["left"].setToolTip(tr("σ: standard deviation of the population"))
 
     @property
     def points(self) -> tuple[QualityPoint, ...]:
@@ -200,7 +201,7 @@ class SizesPlot(CurvePlot):
         self._classes: tuple[ShapeClass, ...] = ()
         super().__init__(
             tr("Equivalent diameter [µm]"),
-            tr("Share at or below [%]"),
+            tr("Cumulative [%]"),
             tr("The sizes of the classes appear here."),
         )
         self.setObjectName("dataset_sizes")

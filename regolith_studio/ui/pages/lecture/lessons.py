@@ -386,8 +386,9 @@ class FieldView(QWidget):
             self.link.frame(drawn.mesh.vertices)
 
     def _arrange(self) -> None:
-        choices = control_row(self.material, self.reset, self.another)
-        views, texts = list(self.frames.values()), [choices, self.sentence, self.formula]
+        buttons = control_row(self.reset, self.another)
+        views = list(self.frames.values())
+        texts = [self.material, buttons, self.sentence, self.formula]
         vbox((lesson_columns("lecture_field", views, [self.spectrum], texts), 1), parent=self)
 
 

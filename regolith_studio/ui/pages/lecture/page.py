@@ -22,6 +22,8 @@ from regolith_studio.ui.widgets.fields import ChoiceBox
 
 FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
 """Initial font size relative to other pages; below so many of their lines in height, a smaller one."""
+LETTERS_OF_NAME = 20
+"""Room for the name of a particle."""
 SMALLEST, LARGEST, STEP = 0.8, 2.4, 1.12
 LESSONS = ("annealing", "degrees", "field")
 PLAYING_KEYS: dict[int, str] = {
@@ -51,6 +53,7 @@ class LecturePage(PageWidget):
         for lesson in (self.annealing, self.degrees, self.field):
             lesson.build()
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
+        self.particle.setMinimumContentsLength(LETTERS_OF_NAME)
         self.another = named(QPushButton(tr("Another seed")), "lecture_another")
         self.request = named(QLabel(), role="hint")
         self._head = (self.particle, self.another, self.request)

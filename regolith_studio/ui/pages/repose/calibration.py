@@ -33,7 +33,7 @@ from regolith_studio.messages import N_
 from regolith_studio.studies.calibration import CONFIDENCE, density_of
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.studies.repose_calibration import ANGLE, ReposeCalibration, angle_target, density_target
-from regolith_studio.ui.layout import equal_parts, vbox
+from regolith_studio.ui.layout import equal_parts, scrolled, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.runs import explanation, interval_bars
 from regolith_studio.ui.pages.repose.setup import SetupPanel
@@ -75,7 +75,7 @@ class RunPanel(QWidget):
             form.addRow(label, field)
         left = QWidget()
         left.setLayout(form)
-        row = equal_parts(Qt.Orientation.Horizontal, (left, *views))
+        row = equal_parts(Qt.Orientation.Horizontal, (scrolled(left, whole_width=True), *views))
         row.setObjectName(f"{name}_parts")
         vbox(card, (row, 1), parent=self, margins=(4, 4, 4, 4))
 
@@ -175,7 +175,7 @@ class CalibrationPanel(RunPanel):
         self.posterior = CurvePlot(
             tr("Static friction"),
             tr("Posterior / prior"),
-            tr("The probability density of the parameter appears after the first usable run."),
+            tr("Each usable run narrows it."),
         )
         interval = tr("{share:.0%} interval", share=CONFIDENCE)
         captions = (tr("Static friction"), interval)

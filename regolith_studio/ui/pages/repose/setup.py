@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
+    QBoxLayout,
     QComboBox,
     QFormLayout,
     QFrame,
@@ -101,11 +103,16 @@ class LimitsStrip(QWidget):
         self.lights = tuple(QLabel("●") for _ in ROWS)
         self.texts = tuple(ElidedLabel() for _ in ROWS)
         self.buttons = tuple(QPushButton() for _ in ROWS)
+        self._boxes: list[QBoxLayout] = []
         for place, (light, text, button) in enumerate(
             zip(self.lights, self.texts, self.buttons, strict=True)
         ):
             frame = named(QFrame(), role="card")
-            hbox(light, (text, 1), button, parent=frame, margins=(8, 3, 6, 3))
+            box = QBoxLayout(QBoxLayout.Direction.LeftToRight, frame)
+            box.setContentsMargins(8, 3, 6, 3)
+            box.addLayout(hbox(light, (text, 1)), 1)
+            box.addWidget(button)
+            self._boxes.append(box)
             button.setObjectName(f"repose_limit_{place}")
             button.clicked.connect(lambda _=False, place=place: self._ask(place))
             row.addWidget(frame, 1)
@@ -114,6 +121,25 @@ class LimitsStrip(QWidget):
     def set_theme(self, theme: Theme) -> None:
         self._theme = theme
         self._colour()
+        self._arrange()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if event.oldSize().width() != event.size().width():
+            self._arrange()
+
+    def _arrange(self) -> None:
+        """Put the buttons beside the texts, or below where that leaves one of them too little room."""
+        room = self.width() / len(ROWS) - 8
+        needed = (
+            text.fontMetrics().horizontalAdvance(text.text()) + button.sizeHint().width()
+            for text, button in zip(self.texts, self.buttons, strict=True)
+            if not button.isHidden()
+        )
+        below = max(needed, default=0) + 3 * self.lights[0].sizeHint().width() + 14 > room
+        directions = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        for box in self._boxes:
+            box.setDirection(directions[below])
 
     def show_scale(self, scale: CaseScale | None, seconds: Callable[[int], float] | None = None) -> None:
         """Show the values of a case.
@@ -129,6 +155,9 @@ class LimitsStrip(QWidget):
             )
             self._offer(place, seconds if value is not None and self._level(place) else None)
         self._colour()
+        # back beside them only at another width: else the page would move with each case
+        if self._boxes[0].direction() == QBoxLayout.Direction.LeftToRight:
+            self._arrange()
 
     def _offer(self, place: int, seconds: Callable[[int], float] | None) -> None:
         button = self.buttons[place]
@@ -176,6 +205,8 @@ class LimitsStrip(QWidget):
 
 
 MAX_PARTICLES = 400_000
+COLUMN_GAP = 24
+"""Pixels between both columns of the set-up."""
 PRESETS = {N_("Teaching"): 300, N_("Standard"): 1000, N_("Fine"): 5000}
 SHAPES = {N_("The dataset's polyhedra"): "polyhedra", N_("Spheres of the same volumes"): "spheres"}
 APPARATUS = {N_("Lifting cylinder"): "cylinder", N_("Rotating drum"): "drum"}
@@ -439,11 +470,33 @@ class SetupPanel(QWidget):
             Collapsible(tr("Numerics of the engine"), *self._numerics.values()),
             hint_label(tr("* not given in the paper: an assumption that can be changed")),
         )
-        row = QHBoxLayout(self)
-        row.setSpacing(24)
+        self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._columns.setSpacing(COLUMN_GAP)
         for column in (case, values):
             column.addStretch(1)
-            row.addLayout(column, 1)
+            self._columns.addLayout(column, 1)
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as the wider of both columns, which come below each other then."""
+        margins = self._columns.contentsMargins()
+        width = max(self._widths()) + margins.left() + margins.right()
+        return QSize(width, super().minimumSizeHint().height())
+
+    def _widths(self) -> list[int]:
+        """Least width of each column."""
+        items = (self._columns.itemAt(place) for place in range(self._columns.count()))
+        return [item.minimumSize().width() for item in items if item is not None]
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        margins = self._columns.contentsMargins()
+        needed = sum(self._widths()) + COLUMN_GAP + margins.left() + margins.right()
+        direction = (
+            QBoxLayout.Direction.TopToBottom if self.width() < needed else QBoxLayout.Direction.LeftToRight
+        )
+        if direction != self._columns.direction():
+            self._columns.setDirection(direction)
+            self.updateGeometry()
 
     def _connect(self) -> None:
         self.open_button.clicked.connect(self.datasetWanted)
