@@ -37,9 +37,9 @@ import psutil
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import DenoiseSettings
+from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.jobs.events import Started
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import extract_measured

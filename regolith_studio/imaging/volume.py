@@ -1,7 +1,8 @@
-"""A volume of voxels, as a scanner or a segmentation leaves it, and boxes of what to cut out of it."""
+"""A volume of voxels, as a scanner or a segmentation leaves it; boxes within it; the scans that ship."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -9,6 +10,11 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.resources import resource
+
+SampleVolume = Literal["labels", "grey"]
+SampleScan = Literal["synthetic", "gradient"]
+"""The plain scan, and one with a gradient of grey values, cupping and rings that no threshold segments."""
 
 Box = tuple[slice, slice, slice]
 """Voxels along x, y and z; each slice has a start and a stop and no step."""
@@ -116,3 +122,28 @@ class Volume:
     def parts(self) -> list[tuple[int, int]]:
         """None: the array is that of this process."""
         return []
+
+
+def sample_file(kind: SampleVolume | Literal["strokes"], scan: SampleScan = "synthetic") -> Path:
+    """Path of a shipped scan; ``strokes`` are voxels that were painted on the scan ``gradient``.
+
+    Raises MissingRequirement if the installation lacks its samples.
+    """
+    return resource("samples", "ct", f"{scan}-{kind}.tif")
+
+
+def sample_volume(kind: SampleVolume = "labels", scan: SampleScan = "synthetic") -> Volume:
+    """A shipped synthetic scan, of 60 grains or of 30: its label volume, or its grey values.
+
+    Only the program's own files are read here; volumes of users go through ``readers``.
+
+    Raises MissingRequirement if the installation lacks its samples.
+    """
+    import tifffile  # takes longer than the rest of this module, which the window imports
+
+    with tifffile.TiffFile(sample_file(kind, scan)) as file:
+        slices: Any = file.asarray()
+        metadata = file.imagej_metadata or {}
+        pixels, length = file.pages.first.tags["XResolution"].value
+    size = (length / pixels, length / pixels, float(metadata["spacing"]))
+    return Volume(slices.T, np.array(size), kind, f"sample:ct/{scan}-{kind}")

@@ -15,7 +15,6 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.imaging.label_surface import label_surface
 from regolith_studio.imaging.label_table import label_table
-from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
 from regolith_studio.imaging.segmentation.scan_outside import (
     AUTO,
     ScanOutside,
@@ -33,7 +32,7 @@ from regolith_studio.imaging.segmentation.segment import (
 )
 from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
 from regolith_studio.imaging.settings import ThresholdSettings
-from regolith_studio.imaging.volume import Box, Volume, VolumeKind
+from regolith_studio.imaging.volume import Box, SampleVolume, Volume, VolumeKind, sample_volume
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,

@@ -13,7 +13,7 @@ import pytest
 import tifffile
 import trimesh
 
-from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.resources import resource
 from regolith_studio.session.outputs import particles
 from regolith_studio.session.outputs.particles import ExtractionFolder

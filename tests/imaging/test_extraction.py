@@ -18,9 +18,8 @@ from regolith_studio.imaging.extraction import (
     voxel_diameter,
 )
 from regolith_studio.imaging.label_table import contact_areas, label_table
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.settings import ExtractionSettings
-from regolith_studio.imaging.volume import Volume, touches
+from regolith_studio.imaging.volume import Volume, sample_volume, touches
 from tools.make_samples.grains import even_sphere, random_rotation
 
 ALL = ExtractionSettings(exclude_border=False, min_voxels=0)

@@ -11,10 +11,9 @@ from regolith_studio.errors import InputError
 from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.contours import MAX_DEPTH, depth
 from regolith_studio.imaging.extraction import ExtractedParticle, extract_particles
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.settings import ExtractionSettings
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Volume, sample_volume
 from tools.make_samples.grains import even_sphere, random_rotation
 
 GREY = ExtractionSettings(exclude_border=False, min_voxels=0, surface="grey")

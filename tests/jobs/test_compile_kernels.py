@@ -14,8 +14,8 @@ import pytest
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.jobs import compile_kernels
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one
 from regolith_studio.jobs.compile_kernels import TASKS, compile_first, compile_first_for, is_compiled

@@ -19,7 +19,7 @@ from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging import volume_slabs
-from regolith_studio.imaging.sample_volumes import sample_file
+from regolith_studio.imaging.volume import sample_file
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.events import Finished, Job, Progress
 from regolith_studio.jobs.executor import Executor

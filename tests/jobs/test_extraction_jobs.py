@@ -8,9 +8,9 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import ExtractedParticle
-from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import DenoiseSettings, ExtractionSettings, ThresholdSettings
+from regolith_studio.imaging.volume import sample_file, sample_volume
 from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, extract_measured, volume_sha256

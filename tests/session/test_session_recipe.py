@@ -191,7 +191,7 @@ def test_that_chosen_grains_and_a_mesh_beside_them_are_the_same_in_a_run(
 
 @pytest.mark.slow
 def test_that_grains_of_the_shipped_scan_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
-    from regolith_studio.imaging.sample_volumes import sample_file
+    from regolith_studio.imaging.volume import sample_file
 
     settings = GrainSettings(SegmentationSettings(splitting=SplittingSettings(h_maxima=1.0)))
     extracted(session, VolumeInput(sample_file("grey")), settings)

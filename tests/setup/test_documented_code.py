@@ -16,7 +16,7 @@ import regolith_studio
 from regolith_studio.cli.commands import app
 from regolith_studio.cli.entry import run
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.imaging.sample_volumes import sample_file
+from regolith_studio.imaging.volume import sample_file
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.jobs.repose_jobs import ReposeRequest

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import tifffile
 
-from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.resources import resource
 from tools.make_samples.samples import GRAINS, SCANS, SEED, write_samples
 from tools.make_samples.synthetic_ct import ScanRecipe, synthetic_scan

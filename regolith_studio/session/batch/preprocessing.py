@@ -20,8 +20,8 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.extraction import ExtractedParticle
-from regolith_studio.imaging.sample_volumes import SampleScan, SampleVolume, sample_file
 from regolith_studio.imaging.segmentation.classifier_document import training_document
+from regolith_studio.imaging.volume import SampleScan, SampleVolume, sample_file
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.file_names import path_inside
 from regolith_studio.io.own_files import json_bytes, read_arrays, read_json

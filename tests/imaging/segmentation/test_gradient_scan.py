@@ -11,10 +11,10 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 
-from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.pixel_classifier import paint_from_labels
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.settings import ThresholdSettings
+from regolith_studio.imaging.volume import sample_file, sample_volume
 from regolith_studio.readers.volumes.read import read_volume
 
 PICTURE = Path(__file__).parents[3] / "docs" / "images" / "gradient_scan.png"

@@ -6,7 +6,6 @@ from scipy import ndimage
 from skimage import filters
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.denoising import denoised, noise_of
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
@@ -21,6 +20,7 @@ from regolith_studio.imaging.settings import (
     DenoiseSettings,
     ThresholdSettings,
 )
+from regolith_studio.imaging.volume import sample_volume
 
 
 def step(noise: float, dtype=np.float32, size: int = 32) -> tuple[np.ndarray, np.ndarray]:

@@ -14,7 +14,6 @@ from regolith_studio.imaging.connected_components import (
     largest_component,
     pores_filled,
 )
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import (
     SegmentationSettings,
     grains_over_heights,
@@ -31,7 +30,7 @@ from regolith_studio.imaging.settings import (
     ThresholdSettings,
     TileSettings,
 )
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Volume, sample_volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.steps import result_of
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.pages.scan import PAGE

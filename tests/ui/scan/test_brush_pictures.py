@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.strokes import Stroke
+from regolith_studio.imaging.volume import sample_file
 from regolith_studio.readers.volumes.read import read_volume
 from tests.ui.scan.mouse import paint, press
 from tests.ui.test_guide_pictures import DRIFT, IMAGES, drift, steady, window  # noqa: F401

@@ -12,9 +12,8 @@ from PySide6.QtGui import QDragEnterEvent
 from PySide6.QtWidgets import QDialogButtonBox, QWidget
 
 from regolith_studio.imaging import volume_slabs
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Volume, sample_volume
 from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.readers.sandbox.parent import Sandbox, volume_sandbox

@@ -8,8 +8,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog
 
-from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import preview, segment
+from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.readers.volumes.read import read_volume
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog

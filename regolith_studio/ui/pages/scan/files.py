@@ -14,9 +14,9 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.label_files import LABEL_SUFFIXES
-from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
 from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.volume import sample_file
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.own_files import json_bytes
 from regolith_studio.jobs.events import Job
