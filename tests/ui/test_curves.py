@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QFontMetricsF
 
 from regolith_studio.ui.theme import DARK
-from regolith_studio.ui.widgets.plots.curves import CurveItems, CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.plots.curves import LEAST_SPAN, CurveItems, CurvePlot, PlotCurve
 
 
 @pytest.mark.parametrize(("log_y", "values"), [(True, (0.0, 0.0)), (False, (math.nan, math.nan))])
@@ -95,3 +95,26 @@ def test_that_the_marker_moves_and_goes(shown):
     plot.set_marker(None)
     assert line.scene() is None
     assert plot._line is None
+
+
+def test_that_a_change_in_the_last_digits_does_not_fill_the_axis_and_its_numbers_differ(app, shown):
+    plot = shown(CurvePlot("Step", "Loss", "Nothing yet."))
+    plot.resize(400, 300)
+    plot.set_curves([PlotCurve("", "#000000", (0.0, 1.0), (0.135500, 0.135501))])
+    app.processEvents()
+    low, high = plot.canvas.getViewBox().viewRange()[1]
+    assert high - low >= 0.99 * LEAST_SPAN * 0.1355
+    axis = plot.canvas.getAxis("left")
+    spacing, ticks = axis.tickValues(low, high, axis.size().height())[0]
+    words = axis.tickStrings(ticks, 1.0, spacing)
+    assert len(words) > 1
+    assert len(set(words)) == len(words)
+    assert all(QFontMetricsF(plot.small_font()).horizontalAdvance(word) < axis.width() for word in words)
+
+
+def test_that_a_constant_zero_has_an_axis(app, shown):
+    plot = shown(CurvePlot("Step", "Loss", "Nothing yet."))
+    plot.set_curves([PlotCurve("", "#000000", (0.0, 1.0), (0.0, 0.0))])
+    app.processEvents()
+    low, high = plot.canvas.getViewBox().viewRange()[1]
+    assert low < 0.0 < high

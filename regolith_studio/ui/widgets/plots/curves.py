@@ -18,6 +18,10 @@ SYMBOL = 5
 HOVER_DISTANCE = 24.0
 """Pixels from a point within which the tool tip shows its values."""
 
+LEAST_SPAN = 2e-3
+"""Least height of a linear axis, as a share of its largest number: the numbers of less have no room at the
+axis, and a change in the last digits would fill the plot."""
+
 
 class CurveItems:
     """Graphics items of a curve: a line, and a scatter item only for curves with symbols.
@@ -148,11 +152,18 @@ class CurvePlot(Plot):
             items = self._drawn[at][1]
             items.draw(curve.x, curve.y, pen, curve.colour if curve.markers else "")
             self._drawn[at] = (curve, items)
+        self._limit_span()
         self.count_axis.whole = all(
             float(x).is_integer() or math.isnan(x) for curve in self._curves for x in curve.x
         )
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
+
+    def _limit_span(self) -> None:
+        heights = np.abs([y for curve in self._curves for y in curve.y])
+        largest = float(np.max(heights, initial=0.0, where=np.isfinite(heights)))
+        if not self._log_y:
+            self.canvas.getViewBox().setLimits(minYRange=LEAST_SPAN * largest)
 
     def value_at(self, place: QPointF) -> str:
         """Label and values of the nearest point of a curve; empty if it is far."""
