@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
-from skimage.measure import marching_cubes, mesh_surface_area
+from skimage.measure import marching_cubes
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.label_table import GrainCrop, LabelTable, grain_crop, label_table
 from regolith_studio.imaging.segmentation.splitting import in_mean_edges, split
 from regolith_studio.imaging.settings import SplittingSettings
@@ -34,7 +35,7 @@ OBJECT_FEATURES = (
     "sphericity",
     "mean grey value",
     "standard deviation of the grey values",
-    "volume over that of the convex hull",
+    "volume of the contour over that of its convex hull",
     "intermediate over long axis",
     "short over intermediate axis",
     "inscribed over equivalent radius",
@@ -42,7 +43,6 @@ OBJECT_FEATURES = (
 )
 _HALVINGS = 6
 _marching_cubes: Any = marching_cubes
-_surface_area: Any = mesh_surface_area
 _distance: Any = ndimage.distance_transform_edt
 
 
@@ -130,8 +130,8 @@ def describe_objects(labels: Volume, grey: Volume) -> Generator[tuple[int, int],
 def object_features(crop: GrainCrop, edges: FloatArray) -> FloatArray:
     """Descriptors of one object, shape (9,).
 
-    Area and hull are those of its contour by marching cubes, whose area is up to 9 % too large, so that the
-    sphericity of a sphere is below 1.
+    Area and solidity are those of its contour by marching cubes, whose area is up to 9 % too large, so that
+    the sphericity of a sphere is below 1. The voxels are more than it holds: five of them 2.3 times its hull.
 
     ``crop``: what lies about it, with a margin of a voxel inside of the volume. ``edges``: of a voxel along
     x, y and z, in micrometres, shape (3,).
@@ -140,7 +140,7 @@ def object_features(crop: GrainCrop, edges: FloatArray) -> FloatArray:
     volume = float(np.count_nonzero(own)) * float(np.prod(edges))
     radius = float(np.cbrt(0.75 * volume / np.pi))
     vertices, faces, _, _ = _marching_cubes(own.astype(np.float32), 0.5, spacing=tuple(edges))
-    area = float(_surface_area(vertices, faces))
+    contour = Mesh(vertices.astype(np.float64), faces[:, ::-1].astype(np.int64))
     grey = crop.values[crop.own].astype(np.float64)
     grey = grey[np.isfinite(grey)] if np.isfinite(grey).any() else np.zeros(1)
     places = np.stack(np.nonzero(own), axis=-1) * edges
@@ -150,10 +150,10 @@ def object_features(crop: GrainCrop, edges: FloatArray) -> FloatArray:
     return np.array(
         [
             np.log(2 * radius),
-            4 * np.pi * radius**2 / area,
+            4 * np.pi * radius**2 / contour.surface_area,
             grey.mean(),
             grey.std(),
-            volume / float(ConvexHull(vertices).volume),
+            contour.volume / float(ConvexHull(vertices).volume),
             middle / long,
             short / middle,
             float(_distance(own, sampling=edges).max()) / radius,
@@ -225,7 +225,7 @@ SUSPICIOUS = 2.0
 class SuspectObject:
     """An object unlike the others.
 
-    - ``solidity``: volume over that of the convex hull.
+    - ``solidity``: volume of its contour over that of the convex hull.
     - ``deviation``: distance from the median in spreads: of its solidity below it, or of its size on either
       side.
     - ``by_size``: whether its size is what is unusual.

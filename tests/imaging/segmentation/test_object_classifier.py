@@ -125,10 +125,31 @@ def test_that_the_descriptors_of_a_ball_are_those_of_geometry():
     assert 0.9 < found["sphericity"] < 1.0
     assert found["mean grey value"] == 130
     assert found["standard deviation of the grey values"] == 0
-    assert found["volume over that of the convex hull"] == pytest.approx(1.0, abs=0.05)
+    assert found["volume of the contour over that of its convex hull"] == pytest.approx(1.0, abs=0.05)
     assert found["short over intermediate axis"] == pytest.approx(1.0, abs=0.01)
     assert found["inscribed over equivalent radius"] == pytest.approx(1.0, abs=0.05)
     assert found["share of the surface in contact"] == 0
+
+
+def test_that_no_object_fills_more_than_its_convex_hull_however_few_voxels_it_has():
+    """The contour of a voxel is an octahedron, which is convex; that of five in a cross or an L is not."""
+    labels = np.zeros((60, 9, 9), dtype=np.int32)
+    shapes = {
+        1: [(0, 0, 0)],
+        2: [(0, 0, 0), (1, 0, 0)],
+        3: [(1, 0, 0), (0, 1, 0), (1, 1, 0), (2, 1, 0), (1, 2, 0)],
+        4: [(0, 0, 0), (0, 1, 0), (0, 2, 0), (1, 0, 0), (2, 0, 0)],
+        5: [(0, 0, 0), (1, 1, 1)],
+    }
+    for label, places in shapes.items():
+        for x, y, z in places:
+            labels[10 * label + x, 3 + y, 3 + z] = label
+    volume = Volume(labels, np.ones(3), "labels", "specks")
+    vectors = result_of(describe_objects(volume, Volume(labels, np.ones(3), "grey", "specks"))).vectors
+    solidity = dict(zip(shapes, vectors[:, 4], strict=True))
+    assert solidity[1] == pytest.approx(1.0)
+    assert max(solidity.values()) <= 1.0 + 1e-9
+    assert solidity[4] < 0.9
 
 
 def test_that_half_of_a_cut_cube_touches_with_a_sixth_of_its_surface():
@@ -191,6 +212,8 @@ def test_that_an_l_and_a_speck_among_cubes_are_suspect():
         x, y = 2 + 14 * (number % 4), 2 + 14 * (number // 4)
         edge = {5: 2, 15: 10}.get(number, 7 + number % 3)
         labels[x : x + edge, y : y + edge, 2 : 2 + edge] = number + 1
+        if number % 2 and number < 15:
+            labels[x, y, 2 : 1 + number % 4] = 0  # no two grains of a scan are alike
         if number == 15:
             labels[x + 3 :, y + 3 :] = 0
     volume = Volume(labels, np.ones(3), "labels", "cubes")
