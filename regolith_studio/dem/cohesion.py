@@ -5,6 +5,10 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase, bond_number
 from regolith_studio.dem.engine import MASS
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.messages import N_
+
+PULL_OFF = N_("one pull-off force for each pair that touches, none on walls and plate")
+"""As a capability of an engine."""
 
 # Not wider: across 0.01 d grains that did not touch, and so had no friction, pulled each other into flatter
 # heaps, of 16 degrees instead of 25 for 400 polyhedra.

@@ -22,6 +22,7 @@ from regolith_studio.dem.engine import (
     measure_filling,
 )
 from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
+from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
 from regolith_studio.settings import setting
@@ -252,6 +253,13 @@ def steps_note(times: dict[float, float]) -> str:
     shares = {step: time / sum(times.values()) for step, time in sorted(times.items(), reverse=True)}
     parts = ", ".join(f"{step:.3g} for {100 * share:.1f} %" for step, share in shares.items())
     return f"Time step in sqrt(d/g), by what moved: {parts} of the simulated time."
+
+
+def diverged(time: float, unit: float, step: float) -> RegolithError:
+    """Error of a solver at a time in its own units, of `unit` seconds, with a time step of the settings."""
+    return RegolithError(
+        f"The simulation diverged after {time * unit:.3g} s; take a smaller time step than {step:g}."
+    )
 
 
 def lift_speed(prepared: PreparedCase) -> float:

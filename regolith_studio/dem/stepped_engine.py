@@ -11,11 +11,31 @@ from regolith_studio.dem.lifting_cylinder import (
     LIFTING,
     LiftingRun,
     Solver,
+    SubstepSettings,
+    halved_step,
     resume_lifting,
     simulate_lifting,
+    steps_note,
 )
 from regolith_studio.dem.rotating_drum import TURNING
 from regolith_studio.dem.snapshot import EngineState, Snapshot
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_
+
+MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
+"""Largest way of all but one in a hundred particles in a step of a solver with substeps, in mean diameters,
+and smallest share of the time step that is set."""
+REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
+UNION = N_("one body of several convex parts, with mass and inertia of their union")
+WITH_SUBSTEPS = {
+    "normal": N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
+    "tangential": N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
+    "coarse_graining": N_("by size"),
+    "missing": N_("Hertz and Mindlin stiffness; single precision"),
+    "compounds": UNION,
+    "drum": N_("a closed ring of boxes and two end plates that turn"),
+}
+"""Capabilities of all engines with substeps."""
 
 
 @dataclass(frozen=True)
@@ -59,3 +79,33 @@ class SteppedEngine(ABC):
     def _run(self, prepared: PreparedCase, settings: Any) -> LiftingRun:
         course = LIFTING if prepared.case.drum is None else TURNING
         return LiftingRun(prepared, settings, self.solver(prepared, settings), course)
+
+
+class SubstepSolver(ABC):
+    """A solver that takes small steps between two searches for contacts; it repeats itself on any threads."""
+
+    settings: SubstepSettings
+    phase: str
+
+    @abstractmethod
+    def speeds(self) -> FloatArray:
+        """Of the particles in sqrt(g d), shape (n,)."""
+
+    def time_step(self) -> float:
+        """The step that is set, halved until what moves does not go too far in it.
+
+        Not while particles fall into the cylinder: these overlaps are gone when the filling has settled.
+        """
+        if self.phase == "fill":
+            return self.settings.time_step
+        return halved_step(self.settings.time_step, self.speeds(), MAX_MOVE, SMALLEST_SHARE)
+
+    def substeps(self, step: float) -> int:
+        """Substeps of a step, which stay as long as they are in the step that is set."""
+        return max(1, round(self.settings.substeps * step / self.settings.time_step))
+
+    def problems(self) -> list[str]:
+        return []
+
+    def notes(self, times: dict[float, float]) -> list[str]:
+        return [steps_note(times), REPEATABLE]

@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.cohesion import PULL_OFF
 from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.lifting_cylinder import Solver, SubstepSettings
-from regolith_studio.dem.stepped_engine import SteppedEngine
+from regolith_studio.dem.stepped_engine import WITH_SUBSTEPS, SteppedEngine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 
@@ -15,14 +16,9 @@ MAX_VERTICES = 84
 for a hull for ever."""
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves, of at most 44 facets"),
-    normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
-    tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
-    cohesion=N_("one pull-off force for each pair that touches, none on walls and plate"),
+    cohesion=PULL_OFF,
     rolling=N_("resistance to rolling and spinning"),
-    coarse_graining=N_("by size"),
-    missing=N_("Hertz and Mindlin stiffness; single precision"),
-    compounds=N_("one body of several convex parts, with mass and inertia of their union"),
-    drum=N_("a closed ring of boxes and two end plates that turn"),
+    **WITH_SUBSTEPS,
 )
 
 

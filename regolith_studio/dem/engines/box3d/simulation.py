@@ -17,15 +17,15 @@ from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
     SubstepSettings,
     Units,
+    diverged,
     friction_in,
-    halved_step,
     lift_speed,
     speed_limit,
-    steps_note,
     wall_ring,
 )
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import DRUM_PHASES, PHASES, ParticleState
+from regolith_studio.dem.stepped_engine import SubstepSolver
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -111,13 +111,9 @@ CONTACT_HERTZ, CONTACT_DAMPING = 60.0, 3.0
 """Frequency and damping ratio with which overlaps are pushed apart."""
 RESTITUTION_SPEED = 0.1
 """Speed in sqrt(g d) below which an impact has no restitution, so that what touches comes to rest."""
-MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
-"""Largest way in a step of all but one in a hundred particles, in mean diameters, and smallest share of the
-time step that is set."""
-REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
 
 
-class Box3dSolver:
+class Box3dSolver(SubstepSolver):
     """Box3D's world: the particles, the cylinder, the plate."""
 
     def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
@@ -250,32 +246,18 @@ class Box3dSolver:
             for shape in self.plates:
                 lib.b3Shape_SetFriction(shape, test.plate_friction**2 / friction)
 
-    def time_step(self) -> float:
-        """The step that is set, halved until what moves does not go too far in it, but for the filling."""
-        if self.phase == "fill":
-            return self.settings.time_step
-        speeds = np.linalg.norm(self._velocities()[:, :3], axis=1)
-        return halved_step(self.settings.time_step, speeds, MAX_MOVE, SMALLEST_SHARE)
+    def speeds(self) -> FloatArray:
+        return np.asarray(np.linalg.norm(self._velocities()[:, :3], axis=1))
 
     def advance(self, step: float, count: int) -> None:
-        substeps = max(1, round(self.settings.substeps * step / self.settings.time_step))
         at_once = count if self.cohesion is None else 1
         for _ in range(count // at_once):
             if self.cohesion is not None:
                 self.cohesion.pull()  # Box3D forgets forces after a step
-            SHIM.rxWorldStepN(self.world, step, substeps, at_once)
+            SHIM.rxWorldStepN(self.world, step, self.substeps(step), at_once)
         self.time += count * step
         if not np.isfinite(self._velocities()).all():
-            raise RegolithError(
-                f"The simulation diverged after {self.time * self.unit_time:.3g} s; take a smaller time step "
-                f"than {self.settings.time_step:g}."
-            )
-
-    def problems(self) -> list[str]:
-        return []
-
-    def notes(self, times: dict[float, float]) -> list[str]:
-        return [steps_note(times), REPEATABLE]
+            raise diverged(self.time, self.unit_time, self.settings.time_step)
 
     def place(self, points: FloatArray, orientations: FloatArray) -> None:
         self._move(np.column_stack([points, np.roll(orientations, -1, axis=1)]), np.zeros((self.n, 6)))

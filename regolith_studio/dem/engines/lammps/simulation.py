@@ -24,6 +24,7 @@ from regolith_studio.dem.engines.lammps.script import (
     stiffness,
 )
 from regolith_studio.dem.initial_packing import enclosing_radii
+from regolith_studio.dem.lifting_cylinder import LiftingSettings
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
@@ -33,8 +34,7 @@ _LOST_ATOMS_ERRORS = ("missing on proc", "Lost atoms", "Out of range atoms", "No
 """Error messages of LAMMPS for particles that moved too far in one step."""
 MAX_SPEED = 2.0
 """Largest speed of a particle, in that of a fall from the top of the column."""
-REST_ENERGY = 2e-3
-"""Mean kinetic energy in m g d at which a heap is at rest."""
+REST_ENERGY = LiftingSettings.rest_energy
 NEAR = 0.05
 """Mean diameters between spheres of bodies that belong to one heap."""
 

@@ -4,21 +4,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.cohesion import PULL_OFF
 from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.lifting_cylinder import Solver
-from regolith_studio.dem.stepped_engine import SteppedEngine
+from regolith_studio.dem.stepped_engine import UNION, SteppedEngine
 from regolith_studio.messages import N_
 
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves"),
     normal=N_("unilateral constraint without restitution; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction in an elliptic cone, one coefficient (the static one)"),
-    cohesion=N_("one pull-off force for each pair that touches, none on walls and plate"),
+    cohesion=PULL_OFF,
     rolling=N_("Coulomb friction against rolling and spinning"),
     coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
     missing=N_("Hertz and Mindlin stiffness, restitution, different static and dynamic friction"),
-    compounds=N_("one body of several convex parts, with mass and inertia of their union"),
+    compounds=UNION,
 )
 
 

@@ -11,6 +11,7 @@ from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
     Units,
+    diverged,
     friction_in,
     halved_step,
     lift_speed,
@@ -323,10 +324,7 @@ class MujocoSolver:
     def _check_state(self) -> None:
         bad = self.data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
         if bad or not np.isfinite(self.data.qpos).all():
-            raise RegolithError(
-                f"The simulation diverged after {self.time * self.unit_time:.3g} s; take a smaller time step "
-                f"than {self.settings.time_step:g}."
-            )
+            raise diverged(self.time, self.unit_time, self.settings.time_step)
 
 
 def _be_silent(_message: str) -> None:

@@ -6,19 +6,14 @@ from dataclasses import dataclass, field
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.lifting_cylinder import Solver, SubstepSettings
-from regolith_studio.dem.stepped_engine import SteppedEngine
+from regolith_studio.dem.stepped_engine import WITH_SUBSTEPS, SteppedEngine
 from regolith_studio.messages import N_
 
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra, their edges rounded by 0.5 % of the diameter"),
-    normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
-    tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
     cohesion="",
     rolling="",
-    coarse_graining=N_("by size"),
-    missing=N_("Hertz and Mindlin stiffness; single precision"),
-    compounds=N_("one body of several convex parts, with mass and inertia of their union"),
-    drum=N_("a closed ring of boxes and two end plates that turn"),
+    **WITH_SUBSTEPS,
 )
 
 

@@ -14,15 +14,15 @@ from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
     SubstepSettings,
     Units,
+    diverged,
     friction_in,
-    halved_step,
     lift_speed,
     speed_limit,
-    steps_note,
     wall_ring,
 )
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
+from regolith_studio.dem.stepped_engine import SubstepSolver
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import inscribed_ball
@@ -36,21 +36,17 @@ is: with 0.02, three of 1,600 contacts of a heap at rest overlap by more than 2 
 whose corners stand out of the rounded ones, by up to 7 %. Heaps of hulls without a radius go on moving."""
 UNIT_DIAMETER = (6 / np.pi) ** (1 / 3)
 """Equivalent diameter of a shape of unit volume."""
-REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
 Parts = tuple[FloatArray, ...]
 """Vertices of each convex part of a shape."""
 IN_PLACE = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 """Place and turn of a part in its body."""
-MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
-"""Largest way in a step of all but one in a hundred particles, in mean diameters, and smallest share of the
-time step that is set. The solver's small steps within a step stay as long as they are."""
 CONTACT_FREQUENCY, CONTACT_DAMPING = 20.0, 3.0
 """Natural frequency and damping ratio with which overlaps are pushed apart. With the solver's own (30, 60 for
 what does not move, and 10) heaps at rest tremble and creep: half of their particles move by 0.05 diameters in
 25 sqrt(d/g), and by 0.013 with these; overlaps are no deeper (docs/repose_engines.md)."""
 
 
-class RapierSolver:
+class RapierSolver(SubstepSolver):
     """Rapier's world: the particles, then the cylinder, then the plate."""
 
     def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
@@ -144,36 +140,19 @@ class RapierSolver:
             for handle in body.colliders:
                 self.world.colliders[handle].friction = value
 
-    def time_step(self) -> float:
-        """The step that is set, halved until what moves does not go too far in it.
-
-        Not while particles fall into the cylinder: these overlaps are gone when the filling has settled.
-        """
-        if self.phase == "fill":
-            return self.settings.time_step
-        speeds = np.array([body.linvel.to_tuple() for body in self.particles])
-        return halved_step(self.settings.time_step, np.linalg.norm(speeds, axis=1), MAX_MOVE, SMALLEST_SHARE)
+    def speeds(self) -> FloatArray:
+        velocities = np.array([body.linvel.to_tuple() for body in self.particles])
+        return np.asarray(np.linalg.norm(velocities, axis=1))
 
     def advance(self, step: float, count: int) -> None:
         numerics = self.world.integration_parameters
         numerics.dt = step
-        numerics.num_solver_iterations = max(
-            1, round(self.settings.substeps * step / self.settings.time_step)
-        )
+        numerics.num_solver_iterations = self.substeps(step)
         for _ in range(count):
             self.world.step()
             if not self.world.quarantine.is_empty():
-                raise RegolithError(
-                    f"The simulation diverged after {self.time * self.unit_time:.3g} s; take a smaller time "
-                    f"step than {self.settings.time_step:g}."
-                )
+                raise diverged(self.time, self.unit_time, self.settings.time_step)
             self.time += step
-
-    def problems(self) -> list[str]:
-        return []
-
-    def notes(self, times: dict[float, float]) -> list[str]:
-        return [steps_note(times), REPEATABLE]
 
     def place(self, points: FloatArray, orientations: FloatArray) -> None:
         still = rapier.Vec3(0.0, 0.0, 0.0)
