@@ -1,5 +1,9 @@
 """The model that MuJoCo gets: masses, inertia, places, units."""
 
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -8,7 +12,7 @@ from benchmarks.sliding_friction import FRICTION, SEEDS, TUMBLED, slide
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.engines.mujoco import simulation
+from regolith_studio.dem.engines.mujoco import ENGINE, simulation
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.engines.mujoco.simulation import (
     PARTICLE,
@@ -17,6 +21,8 @@ from regolith_studio.dem.engines.mujoco.simulation import (
     build_model,
 )
 from regolith_studio.dem.lifting_cylinder import N_WALLS
+from regolith_studio.dem.verification import scenes
+from regolith_studio.steps import result_of
 
 
 def test_that_particles_feel_half_their_friction_while_they_are_filled_in_only(boxes: Dataset) -> None:
@@ -110,6 +116,16 @@ def test_that_cubes_slide_flat_where_a_contact_takes_four_steps() -> None:
     felt, turn, _, _ = slide(39.66, 2, None, MujocoSettings(contact_steps=4))
     assert turn.max() < TUMBLED
     assert felt.mean() == pytest.approx(FRICTION, abs=0.02)
+
+
+@pytest.mark.slow
+def test_that_slabs_hold_up_to_the_angle_of_friction_with_softer_contacts_and_a_finer_solution() -> None:
+    finer = partial(MujocoSettings, contact_steps=4, tolerance=1e-8)
+    engine: Any = SimpleNamespace(Settings=finer, solver=ENGINE.solver)
+    usual, tilt = (result_of(scenes.incline(each)) for each in (ENGINE, engine))
+    assert (usual.value, tilt.value) == (1.0, 0.2)
+    assert tilt.passed
+    assert result_of(scenes.fall(engine)).value == pytest.approx(0.04, abs=0.005)
 
 
 def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:
