@@ -201,7 +201,7 @@ def write_study(study: ReposeStudy, folder: Path, surface: ReposeSurface | None 
     )
 
     def write(stage: Path) -> tuple[Path, ...]:
-        files = write_repose_study(study, stage, STUDY)
+        files = write_repose_study(study, stage)
         return files if surface is None else (*files, *write_surface(surface, stage))
 
     return write_with_runs(folder, STUDY, write)

@@ -164,17 +164,15 @@ def write_sweep(key: str, study: CoarseningStudy, folder: Path) -> tuple[Path, .
     )
 
 
-def write_coarsening_study(
-    study: CoarseningStudy, folder: Path, stem: str = "coarsening"
-) -> tuple[Path, ...]:
+def write_coarsening_study(study: CoarseningStudy, folder: Path) -> tuple[Path, ...]:
     """Tables (CSV, JSON) of rows and of particles, and the figures (PNG, SVG)."""
     paths: tuple[Path, ...] = (
-        *write_table(rmsre_table(study), folder, f"{stem}_rmsre"),
-        *write_table(particle_table(study), folder, f"{stem}_particles"),
-        *write_figure(coarsening_figure(study), folder, f"{stem}_rmsre"),
+        *write_table(rmsre_table(study), folder, "coarsening_rmsre"),
+        *write_table(particle_table(study), folder, "coarsening_particles"),
+        *write_figure(coarsening_figure(study), folder, "coarsening_rmsre"),
     )
     if len({row.n_facets for row in study.rows}) == len(study.rows) > 1:
-        paths += write_figure(facet_count_figure(study), folder, f"{stem}_faces")
+        paths += write_figure(facet_count_figure(study), folder, "coarsening_faces")
     return paths
 
 

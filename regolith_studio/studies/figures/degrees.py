@@ -51,12 +51,12 @@ def lmax_figure(study: LmaxStudy) -> Figure:
     return figure
 
 
-def write_lmax_study(study: LmaxStudy, folder: Path, stem: str = "lmax") -> tuple[Path, ...]:
+def write_lmax_study(study: LmaxStudy, folder: Path) -> tuple[Path, ...]:
     """Tables (CSV, JSON) of groups and of particles, and the figure (PNG, SVG)."""
     return (
-        *write_table(rmsre_table(study), folder, f"{stem}_rmsre"),
-        *write_table(particle_table(study), folder, f"{stem}_particles"),
-        *write_figure(lmax_figure(study), folder, f"{stem}_rmsre"),
+        *write_table(rmsre_table(study), folder, "lmax_rmsre"),
+        *write_table(particle_table(study), folder, "lmax_particles"),
+        *write_figure(lmax_figure(study), folder, "lmax_rmsre"),
     )
 
 

@@ -137,22 +137,20 @@ def components_figure(study: PopulationStudy) -> Figure | None:
     return figure
 
 
-def write_population_study(
-    study: PopulationStudy, folder: Path, stem: str = "population"
-) -> tuple[Path, ...]:
+def write_population_study(study: PopulationStudy, folder: Path) -> tuple[Path, ...]:
     """Tables (CSV, JSON) of ranking, targets, distances and pairs, and the figures (PNG, SVG)."""
     files = [
-        *write_table(ranking_table(study), folder, f"{stem}_ranking"),
-        *write_table(target_table(study), folder, f"{stem}_targets"),
-        *write_table(distance_table(study), folder, f"{stem}_distances"),
-        *write_table(pair_table(study), folder, f"{stem}_pairs"),
+        *write_table(ranking_table(study), folder, "population_ranking"),
+        *write_table(target_table(study), folder, "population_targets"),
+        *write_table(distance_table(study), folder, "population_distances"),
+        *write_table(pair_table(study), folder, "population_pairs"),
     ]
     for weighting in WEIGHTINGS:
-        files += write_figure(density_figure(study, weighting), folder, f"{stem}_{weighting}")
-    files += write_figure(pair_figure(study), folder, f"{stem}_pairs")
-    files += write_figure(quantile_figure(study), folder, f"{stem}_quantiles")
+        files += write_figure(density_figure(study, weighting), folder, f"population_{weighting}")
+    files += write_figure(pair_figure(study), folder, "population_pairs")
+    files += write_figure(quantile_figure(study), folder, "population_quantiles")
     if (figure := components_figure(study)) is not None:
-        files += write_figure(figure, folder, f"{stem}_components")
+        files += write_figure(figure, folder, "population_components")
     return tuple(files)
 
 

@@ -301,13 +301,13 @@ def repose_study_figure(study: ReposeStudy) -> Figure:
     return figure
 
 
-def write_repose_study(study: ReposeStudy, folder: Path, stem: str = "repose_study") -> tuple[Path, ...]:
+def write_repose_study(study: ReposeStudy, folder: Path) -> tuple[Path, ...]:
     """Table (CSV, JSON) and figure (PNG, SVG), and a table of means where values were repeated."""
     means = repose_means(study)
     return (
-        *write_table(repose_table(study), folder, stem),
-        *(() if means is None else write_table(means, folder, f"{stem}_means")),
-        *write_figure(repose_study_figure(study), folder, stem),
+        *write_table(repose_table(study), folder, "repose_study"),
+        *(() if means is None else write_table(means, folder, "repose_study_means")),
+        *write_figure(repose_study_figure(study), folder, "repose_study"),
     )
 
 
