@@ -22,6 +22,11 @@ from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 
 keys = pytest.mark.parametrize("key", sorted(MODELS))
+fitted_anew = pytest.mark.parametrize(
+    "key",
+    [pytest.param(key, marks=pytest.mark.slow) if key == "hull_field" else key for key in sorted(MODELS)],
+)
+"""A hull field takes two seconds; its draws are tested with the others'."""
 
 
 def test_that_the_models_are_found_by_themselves() -> None:
@@ -156,7 +161,7 @@ def test_that_a_degree_beyond_the_sample_is_refused(key: str, rough_sample: Call
         MODELS[key].fit(rough_sample(8), MODELS[key].Settings(l_max=30))
 
 
-@keys
+@fitted_anew
 def test_that_two_particles_are_enough(
     key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]
 ) -> None:
@@ -164,7 +169,7 @@ def test_that_two_particles_are_enough(
     assert np.isfinite(model.draw(5, 0).coefficients).all()
 
 
-@keys
+@fitted_anew
 def test_that_particles_of_one_size_are_drawn_at_that_size(
     key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]
 ) -> None:
