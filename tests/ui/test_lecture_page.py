@@ -19,6 +19,7 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
 from regolith_studio.ui.pages.lecture import PAGE, texts
+from regolith_studio.ui.pages.lecture.lessons import PlaybackBar
 from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
 from regolith_studio.ui.views.view import ViewFrame
 from regolith_studio.ui.widgets import formula
@@ -369,3 +370,13 @@ def test_that_german_nouns_keep_their_capitals_within_a_sentence(speaking):
     assert texts.in_a_sentence("Volume") == "Volumen"
     sentence = texts.degree_sentence(DegreeStep(3, icosphere(0), {"volume": 0.2}, 0.1, 1.0))
     assert sentence.endswith("Volumen 20,0\N{NO-BREAK SPACE}%.")
+
+
+def test_that_the_number_of_a_step_has_room_in_letters_that_the_label_gets_later(shown, app):
+    bar = shown(PlaybackBar("bar", "step"))
+    bar.set_count(101)
+    for size in (9, 20):
+        bar.clock.setStyleSheet(f"font-size: {size}pt")
+        bar.resize(300, bar.sizeHint().height())
+        app.processEvents()
+        assert bar.clock.width() >= bar.clock.fontMetrics().horizontalAdvance(bar.clock.text())

@@ -45,6 +45,7 @@ def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, t
     page.open_positions()
     wait(lambda: page.sections.plot.section is not None)
     assert page._measured.angle == pytest.approx(30.0, abs=2.0)
+    assert page.angle.button.text() == "Use the open particles"  # the heap of a file cannot run again
     before = page._measured
     assert page.angle.figures[0].text() == f"{page._measured.angle:.1f}°"
     cut = page.sections.plot.cut("high")

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from PySide6.QtCore import QEvent, Signal
+from PySide6.QtCore import QEvent, QObject, Signal
 from PySide6.QtWidgets import QLabel, QPushButton, QSplitter, QWidget
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -63,6 +63,7 @@ class PlaybackBar(StepPlayer):
         self.speed = named(NumberSlider(SPEED), f"{name}_speed")
         self.speed.setMaximumWidth(300)
         self.clock = QLabel()
+        self.clock.installEventFilter(self)
         self._arrange()
         self.first.clicked.connect(lambda: self.go(0))
         self.back.clicked.connect(lambda: self.go(self.step - 1))
@@ -91,10 +92,11 @@ class PlaybackBar(StepPlayer):
     def _set_speed(self) -> None:
         self._timer.setInterval(round(1000 / max(float(self.speed.value()), 0.1)))
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Follow the font of the clock, which may change after that of the bar."""
+        if watched is self.clock and event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._reserve_width()
+        return super().eventFilter(watched, event)
 
     def _reserve_width(self) -> None:
         """Reserve width for the longest texts, so that the slider does not move."""
