@@ -6224,6 +6224,10 @@
         <translation>Die Schüttung bewegte sich am Ende noch.</translation>
     </message>
     <message>
+        <source>The kept runs are being read.</source>
+        <translation>Die vorhandenen Läufe werden gelesen.</translation>
+    </message>
+    <message>
         <source>The language takes effect when the program starts again.</source>
         <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
     </message>

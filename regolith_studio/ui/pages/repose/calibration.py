@@ -275,6 +275,7 @@ class CalibrationController(SeriesController):
             state = ResultState.CURRENT if len(calibration.runs) == wanted.max_runs else ResultState.STOPPED
             self._panel.card.show_record(replace(record, state=state))
 
+        self._panel.card.show_record(ResultRecord(note=tr("The kept runs are being read.")))
         job = Job(kept_calibration, (wanted, folder))
         self._context.start(tr("Angle of repose: calibration"), job, show, queue="calibration")
 
