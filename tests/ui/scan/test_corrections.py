@@ -105,8 +105,13 @@ def test_that_grains_are_merged_split_and_deleted_with_undo_and_the_recipe_does_
 
     use("seeds", (9, 48), (23, 48))
     assert page.grains.n_grains == 7
+    edges = page.scan.volume.voxel_size
+    view.hover(QPointF(*((np.array(CENTRES[2]) + 0.5) * edges[:2])))
+    assert "grain " in page.slices.readout.text()
     use("delete", CENTRES[2])
     assert page.grains.n_grains == 6
+    assert "x = 49, y = 17" in page.slices.readout.text()
+    assert "grain " not in page.slices.readout.text(), "the mouse has not moved, the grain is gone"
     use("merge", CENTRES[0], CENTRES[4])
     assert page.grains.n_grains == 5
     page.edits.tools["cut"].click()

@@ -255,6 +255,7 @@ class SlicesView(QWidget):
         self._class_colours: NDArray[np.uint8] | None = None
         self._highlighted: set[int] = set()
         self.position = (0, 0, 0)
+        self._pointed: tuple[int, int, int] | None = None
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
         self._labels: SliceImages | None = None
@@ -275,7 +276,7 @@ class SlicesView(QWidget):
     def set_scan(self, scan: Scan) -> None:
         """Show another volume, with slices through its centre."""
         self._scan, self._labels, self._found = scan, None, None
-        self.readout.setText("")
+        self._tell(None)
         for view in self.views:
             view.set_volume(scan.volume, scan.sections, scan.contrast)
         self._show_boxes(scan.volume.kind == "grey")
@@ -319,6 +320,7 @@ class SlicesView(QWidget):
         self.histogram.set_denoised(None if found is None else found.seen)
         self._show_boxes(True)
         self._lay_over()
+        self._tell(self._pointed)
 
     def show_segmentation(
         self, found: Segmentation, labels: SliceImages, colours: NDArray[np.uint8] | None = None
@@ -336,6 +338,7 @@ class SlicesView(QWidget):
         self.histogram.set_level(found.level)
         self._show_boxes(False)
         self._lay_over()
+        self._tell(self._pointed)
 
     def show_surface(self, labels: Volume, surface: LabelSurface, sizes: Mapping[int, int]) -> None:
         """Show the surfaces of labels in three dimensions, in the colours of the slices.
@@ -351,6 +354,7 @@ class SlicesView(QWidget):
         if colours is None:
             colours = colours_of_labels(np.arange(highest + 1))
         self.grains.show(surface, colours, self._highlighted)
+        self._tell(self._pointed)
 
     def highlight(self, labels: set[int]) -> None:
         """Let grains stand out among all others in three dimensions; none for all alike."""
@@ -413,6 +417,7 @@ class SlicesView(QWidget):
 
     def _tell(self, position: tuple[int, int, int] | None) -> None:
         """Tell place, grey value and grain of the voxel under the mouse, counted from 1."""
+        self._pointed = position
         if self._scan is None or position is None:
             self.readout.setText("")
             return
@@ -435,7 +440,10 @@ class SlicesView(QWidget):
         return max(0, int(self._found.labels.array[tuple(places)])) if inside else 0
 
     def _grain_text(self, label: int) -> str:
-        count = self._surface[2].get(label) if self._surface is not None else None
+        """The grain with its size, which is known as soon as the surfaces of these labels are."""
+        shown = self._found.labels if self._found is not None else None
+        known = self._surface is not None and (shown is None or self._surface[0] is shown)
+        count = self._surface[2].get(label) if known and self._surface is not None else None
         if count is None or self._scan is None:
             return tr("grain {label}", label=label)
         return tr(
