@@ -56,8 +56,6 @@ PAPER_DEGREE = 10
 BATCH_SIZE = 20
 """Particles that one process makes at a time."""
 N_EXAMPLES = 6
-EXAMPLE_LEVEL = 4
-"""Icosphere level of the examples."""
 MAX_SIZED = 10_000
 """Drawn particles whose sizes are computed at once."""
 ModelOrigin = ShapeSource | tuple[Particle, ...]
@@ -341,7 +339,8 @@ def fit_shapes(origin: ModelOrigin, request: GenerationRequest, half: bool = Fal
 def draw_shapes(model: FittedModel, request: GenerationRequest) -> Steps:
     """Draw the particles of a request; returns :class:`GenerationResult`."""
     draws: Realizations = yield from draw(model, request)
-    meshes = [virtual_mesh(draws, i, EXAMPLE_LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
+    level = level_for(draws.l_max)
+    meshes = [virtual_mesh(draws, i, level) for i in range(min(N_EXAMPLES, len(draws)))]
     radii = draws.equivalent_radii() if 0 < len(draws) <= MAX_SIZED else None
     ends = None if radii is None else (float(radii.min()), float(radii.max()))
     return GenerationResult(draws, tuple(meshes), model, request, ends)
@@ -356,7 +355,7 @@ def draw_live(model: FittedModel, seed: int) -> Steps:
 
 def live_mesh(model: FittedModel, seed: int) -> Mesh:
     """One particle; the same seed gives the same random numbers, so that it changes with the spectrum."""
-    return virtual_mesh(model.draw(1, seed), 0, EXAMPLE_LEVEL)
+    return virtual_mesh(model.draw(1, seed), 0, level_for(model.l_max))
 
 
 def _example_meshes(sample: Sample, l_max: int) -> tuple[Mesh, ...]:
@@ -366,7 +365,7 @@ def _example_meshes(sample: Sample, l_max: int) -> tuple[Mesh, ...]:
     meshes = []
     for index in picks:
         try:
-            meshes.append(reconstruct(cut.particle(int(index)), level=EXAMPLE_LEVEL))
+            meshes.append(reconstruct(cut.particle(int(index)), level=level_for(cut.l_max)))
         except GeometryError:
             continue
     return tuple(meshes)

@@ -8896,6 +8896,10 @@
         <translation>{drawn} Ziehungen unterscheiden sich von {measured} gemessenen Partikeln nicht stärker als durch Stichprobenrauschen.</translation>
     </message>
     <message>
+        <source>{drawn} of the {count} open particles were drawn: a fit to them repeats a model.</source>
+        <translation>{drawn} der {count} geöffneten Partikel sind gezogen: Eine Anpassung an sie wiederholt ein Modell.</translation>
+    </message>
+    <message>
         <source>{duration} left</source>
         <translation>noch {duration}</translation>
     </message>

@@ -12,10 +12,12 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.steps import result_of
 from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.ui.pages.model import PAGE
@@ -105,6 +107,19 @@ def test_that_keys_change_a_bar_and_a_spectrum_that_is_only_shown_stays(shown):
     np.testing.assert_array_equal(editor.value(), AMPLITUDES)
 
 
+@pytest.mark.parametrize(("l_max", "level"), [(10, 4), (30, 5)])
+def test_that_shapes_on_screen_have_a_mesh_that_is_fine_enough_for_their_degree(l_max, level):
+    """Level 4 has fewer than three vertices a wave of degree 30: thin rims were jagged."""
+    rows = np.zeros((2, (l_max + 1) ** 2))
+    rows[:, 0], rows[:, -1] = 10.0, (0.1, -0.1)
+    source = ShapeSource(Sample(rows), "rough", "0" * 64)
+    request = GenerationRequest("gaussian_field", l_max=l_max, n=1)
+    fitted = result_of(fit_shapes(source, request))
+    drawn = result_of(draw_shapes(fitted.model, request))
+    for mesh in (fitted.first, *fitted.examples, *drawn.examples):
+        assert len(mesh.vertices) == len(icosphere(level).vertices)
+
+
 def test_that_the_drawn_particle_follows_the_spectrum_of_a_material(page):
     page.source.choose_source("ma165")
     assert not page.source.model.isEnabled()
@@ -174,6 +189,9 @@ def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_o
     page._context.commands.adopt = lambda made, origin: session.adopt(made, origin=origin) or True
     page.drawing.adopt.click()
     wait(lambda: page.source.source.itemText(0) == "Open particles (2)")
+    assert (
+        page.source.findings.text() == "2 of the 2 open particles were drawn: a fit to them repeats a model."
+    )
     page.drawing.draw.click()
     assert page._fitted is fitted
     session.adopt([egg(n) for n in range(4)])

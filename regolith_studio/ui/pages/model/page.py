@@ -33,6 +33,7 @@ from regolith_studio.jobs.model_jobs import (
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
+from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import MaterialCard, materials, write_card
 from regolith_studio.shape_models.models import MODELS, write_model
@@ -119,6 +120,11 @@ class SourceKind:
     words: str
 
 
+def is_drawn(entry: ParticleEntry) -> bool:
+    """Whether a particle was drawn from a model."""
+    return entry.ref is not None and isinstance(entry.ref.origin, VirtualSource)
+
+
 class SourceBox:
     """By key: ``open``, names of materials, and ``file:`` with a number."""
 
@@ -142,7 +148,7 @@ class SourceBox:
     def kind(self, key: str) -> SourceKind:
         """The source of a key."""
         if key == OPEN_PARTICLES:
-            return SourceKind("", FIT_DEGREE, "")
+            return SourceKind("", FIT_DEGREE, self._drawn_words())
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
@@ -159,6 +165,15 @@ class SourceBox:
             case _:
                 words = tr("A fitted model: {name}.", name=in_a_sentence(MODELS[content.key].label))
                 return SourceKind(content.key, content.l_max, words)
+
+    def _drawn_words(self) -> str:
+        """How many of the open particles are no measured ones; empty where all are."""
+        entries = self._session.particles
+        drawn = sum(is_drawn(entry) for entry in entries)
+        if not drawn:
+            return ""
+        template = N_("{drawn} of the {count} open particles were drawn: a fit to them repeats a model.")
+        return tr(template, drawn=drawn, count=len(entries))
 
     def origin(self, key: str) -> ModelOrigin:
         """The source as a job takes it."""
@@ -374,7 +389,7 @@ class ModelPage(PageWidget):
         chosen, request = self.source.value(), self._request()
         seed = request.seed if chosen["half"] else 0
         entries = self._context.session.particles if chosen["source"] == OPEN_PARTICLES else ()
-        drawn = bool(entries) and all(e.ref and isinstance(e.ref.origin, VirtualSource) for e in entries)
+        drawn = bool(entries) and all(map(is_drawn, entries))
         particles = self._fitted_to[-1:] if drawn else (tuple(entry.particle for entry in entries),)
         return chosen["source"], chosen["half"], replace(request, n=1, size_range=None, seed=seed), *particles
 
