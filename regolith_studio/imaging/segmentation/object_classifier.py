@@ -208,17 +208,23 @@ def train_on_examples(
     )
 
 
+MIDDLE = (0.16, 0.84)
+"""Quantiles that bound the middle 68 % of the objects."""
+
+
 def _centre_and_spread(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Median and half the range of the middle 68 % of each descriptor; 1 where all objects are alike."""
     # One standard deviation on either side, of a Gaussian; artefacts among the objects hardly change it.
-    low, centre, high = np.quantile(vectors, (0.16, 0.5, 0.84), axis=0)
-    spread = (high - low) / 2
+    low, high = np.quantile(vectors, MIDDLE, axis=0)
+    centre, spread = np.median(vectors, axis=0), (high - low) / 2
     spread[spread <= 1e-9 * np.maximum(np.abs(centre), 1.0)] = 1.0
     return centre, spread
 
 
 SUSPICIOUS = 2.0
 """Distance from the median in spreads beyond which an object may be several grains, or a part of one."""
+SOLIDITY_SPREAD = 0.01
+"""Least spread of solidities: the steps of voxels change that of a grain by so much, and boxes have none."""
 
 
 @dataclass(frozen=True)
@@ -243,6 +249,8 @@ def suspect_objects(objects: ObjectTable) -> list[SuspectObject]:
     """Objects that are unusually concave, large or small, the most unusual one first."""
     size, solidity = 0, 4  # of OBJECT_FEATURES
     centre, spread = _centre_and_spread(objects.vectors)
+    low, high = np.quantile(objects.vectors[:, solidity], MIDDLE)
+    spread[solidity] = max((high - low) / 2, SOLIDITY_SPREAD)
     away = (objects.vectors - centre) / spread
     parts = np.stack([-away[:, solidity], np.abs(away[:, size])])
     deviation, by_size = parts.max(axis=0), parts.argmax(axis=0) == 1
