@@ -105,6 +105,22 @@ def test_that_a_calibration_without_a_usable_run_shows_no_value(page):
     assert page.calibration.posterior.curves == ()
 
 
+def test_that_usable_runs_are_shown_also_where_they_give_no_value(page):
+    calibration = ReposeCalibration.begin(
+        [CalibrationParameter("static_friction", 0.3, 0.9)], [angle_target(30.0, 1.0)]
+    )
+    measured = {"status": "pile", "angle_deg": 30.0, "interval_deg": [5.0, 55.0]}
+    measured["settings"] = {"confidence": 0.95}
+    document = {"state": "finished", "measurement": measured}
+    calibration = calibration.with_run(CalibrationRun("run", (0.6,), document))
+    assert not calibration.is_informed(0)
+    record = page.calibration.show_calibration(calibration)
+    wanted, runs = page.calibration.prediction.curves
+    assert (set(wanted.y), runs.x, runs.y) == ({30.0}, (0.6,), (30.0,))
+    assert page.calibration.posterior.curves == ()
+    assert record.values == ()
+
+
 def test_that_the_form_of_a_series_scrolls_before_its_fields_are_cut(page, app):
     for place, panel in ((3, page.study), (4, page.calibration)):
         page.tabs.setCurrentIndex(place)

@@ -230,17 +230,19 @@ class CalibrationPanel(RunPanel):
 
     def _draw(self) -> None:
         calibration = self._calibration
-        if calibration is None or not calibration.is_informed(0):
+        self.posterior.set_marker(None)
+        if calibration is None or not calibration.usable_runs:
             self.prediction.set_curves([])
             self.posterior.set_curves([])
-            self.posterior.set_marker(None)
             return
         label = tr(PARAMETERS[calibration.parameters[0].name][0])
         self.prediction.set_labels(label, tr("Angle [°]"))
         self.posterior.set_labels(label, tr("Posterior / prior"))
         self.prediction.set_curves(_prediction_curves(calibration, self.prediction.theme))
-        self.posterior.set_curves(_posterior_curves(calibration, self.posterior.theme))
-        self.posterior.set_marker(calibration.next_values[0])
+        informed = calibration.is_informed(0)
+        self.posterior.set_curves(_posterior_curves(calibration, self.posterior.theme) if informed else [])
+        if informed:
+            self.posterior.set_marker(calibration.next_values[0])
 
 
 class CalibrationController(SeriesController):
@@ -304,19 +306,24 @@ def _record(calibration: ReposeCalibration, request: ReposeCalibrationRequest | 
 
 
 def _prediction_curves(calibration: ReposeCalibration, theme: Theme) -> list[PlotCurve]:
-    """Predicted angle with its standard deviation, the wanted angle, and the runs."""
+    """The wanted angle and the runs; the predicted angle with its standard deviation where they know one."""
     posterior, parameter = calibration.posterior, calibration.parameters[0]
+    wanted = next(each.value for each in calibration.targets if each.name == ANGLE)
+    runs = [(run.values[0], run.result(ANGLE)) for run in calibration.runs]
+    seen = [
+        PlotCurve(tr("wanted"), theme.particle, (parameter.low, parameter.high), (wanted, wanted), dash=True),
+        PlotCurve(tr("run"), theme.polyhedron, *_numbers_of(runs), markers=True, line=False),
+    ]
+    if not calibration.is_informed(0):
+        return seen
     order = np.argsort(posterior.points[:, 0])[:: len(posterior.points) // 64]
     x = _numbers(posterior.points[order, 0])
     mean, spread = posterior.predicted[order, 0], posterior.deviations[order, 0]
-    wanted = next(each.value for each in calibration.targets if each.name == ANGLE)
-    runs = [(run.values[0], run.result(ANGLE)) for run in calibration.runs]
     return [
         PlotCurve(tr("predicted"), theme.fit, x, _numbers(mean)),
         PlotCurve(tr("standard deviation"), theme.fit, x, _numbers(mean - spread), dash=True),
         PlotCurve("", theme.fit, x, _numbers(mean + spread), dash=True),
-        PlotCurve(tr("wanted"), theme.particle, (parameter.low, parameter.high), (wanted, wanted), dash=True),
-        PlotCurve(tr("run"), theme.polyhedron, *_numbers_of(runs), markers=True, line=False),
+        *seen,
     ]
 
 
