@@ -106,7 +106,8 @@ class Match:
 
 MASSES = (
     "Sizes are by mass. Masses hold for parts of one density; tables without volumes count as ellipsoids. "
-    "Distances within one floor are no larger than those of samples of the target itself."
+    "Distances within one floor are no larger than those of samples of the target itself. Intervals of "
+    "masses are too short for parts of few particles: at 30, they hold the true mass in about 8 of 10 cases."
 )
 
 
@@ -227,15 +228,16 @@ class _Comparison:
         """K of each resample, whose `counts` (b, n) say how often it has each particle of each part."""
         k = len(self.counts)
         weights = [c * self._weights[part] for c, part in zip(counts, self._parts, strict=True)]
-        squares = [(c * self._weights[p] ** 2).sum(axis=1) for c, p in zip(counts, self._parts, strict=True)]
+        squares = [(w**2).sum(axis=1) for w in weights]
         sums = [w.sum(axis=1) for w in weights]
         mean = np.empty((len(counts[0]), k, k))
         for i, first in enumerate(self._parts):
             for j, second in enumerate(self._parts[i:], start=i):
                 product = weights[i] @ self._distances[np.ix_(first, second)]
                 total = np.einsum("bn,bn->b", product, weights[j])
-                # Without pairs of a particle with itself: their distance of 0 would lower the mean within a
-                # part and so move small parts away from the target.
+                # Without pairs of a particle with itself, also of one that was drawn several times: their
+                # distance of 0 would lower the mean within a part and so move small parts away from the
+                # target.
                 pairs = sums[i] * sums[j] - (squares[i] if i == j else 0.0)
                 mean[:, i, j] = mean[:, j, i] = total / pairs
         to_target, within = mean[:, 0, 1:], mean[:, 0, 0]

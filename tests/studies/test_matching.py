@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.studies.matching import ComparedMaterial, match
+from regolith_studio.studies.matching import ComparedMaterial, _Comparison, match
 
 MEDIANS = {"fine": (30.0, 0.80), "middle": (90.0, 0.70), "coarse": (250.0, 0.60)}
 
@@ -86,3 +86,13 @@ def test_that_what_cannot_be_compared_is_one_sentence():
     ):
         with pytest.raises(InputError, match=reason):
             match(fine, candidates, weighting)
+
+
+def test_that_a_particle_drawn_twice_does_not_lower_the_mean_distance_within_its_part():
+    soil = ComparedMaterial("soil", {"equivalent_radius": np.exp([0.0, 1.0]), "sphericity": np.zeros(2)})
+    part = ComparedMaterial("part", {"equivalent_radius": np.exp([2.0, 5.0]), "sphericity": np.zeros(2)})
+    counts = [np.ones((1, 2)), np.array([[3.0, 1.0]])]
+    ((form,),) = _Comparison([soil, part], ("equivalent_radius", "sphericity"), "number").forms(counts)
+    # Distances in ln r, 1 within the soil and 3 within the part, over the soil's deviation of 1/2.
+    to_part = 3 / 4 * (2.0 + 1.0) / 2 + 1 / 4 * (5.0 + 4.0) / 2
+    assert form == pytest.approx(2 * (2 * to_part - 1.0 - 3.0))
