@@ -9,7 +9,7 @@ import pytest
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.runners import dask_cluster
-from regolith_studio.jobs.runners.dask_cluster import SchedulerAddress
+from regolith_studio.jobs.runners.dask_cluster import check_scheduler, parsed_address
 
 
 @pytest.fixture(autouse=True)
@@ -50,42 +50,44 @@ def listener(greeting: bytes) -> Iterator[int]:
     ],
 )
 def test_that_an_address_is_read_in_its_usual_forms(text: str, whole: str) -> None:
-    assert str(SchedulerAddress.parse(text)) == whole
+    assert parsed_address(text) == whole
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"),
+    "text",
     [
-        ("login", "has no port"),
-        ("tcp://login", "has no port"),
-        ("tcp://:8786", "has no host"),
-        ("  ", "has no host"),
-        ("tcp://login:99999", "no number up to 65535"),
-        ("tcp://login:eight", "no number up to 65535"),
-        ("http://login:8787/status", "begins with http"),
+        "login",
+        "tcp://login",
+        "tcp://:8786",
+        "  ",
+        "tcp://login:0",
+        "tcp://login:99999",
+        "login:eight",
+        "http://login:8787",
+        "tcp://[::1:8786",
     ],
 )
-def test_that_another_form_is_refused_with_the_right_one(text: str, sentence: str) -> None:
-    with pytest.raises(InputError, match=sentence) as reported:
-        SchedulerAddress.parse(text)
-    assert "tcp://HOST:8786" in str(reported.value)
+def test_that_another_form_is_refused_with_the_right_one(text: str) -> None:
+    with pytest.raises(InputError, match=r"tcp://HOST:8786 .* from 1 to 65535") as reported:
+        parsed_address(text)
+    assert repr(text.strip()) in str(reported.value)
 
 
 def test_that_a_greeting_of_a_few_hundred_bytes_is_taken_for_a_scheduler() -> None:
     with listener((312).to_bytes(8, "little") + b"...") as port:
-        SchedulerAddress("tcp", "127.0.0.1", port).check()
+        check_scheduler(f"tcp://127.0.0.1:{port}")
 
 
 @pytest.mark.parametrize("greeting", [b"HTTP/1.1 400 Bad Request\r\n\r\n", b"", b"SSH"])
 def test_that_another_program_at_the_port_is_told_from_a_scheduler(greeting: bytes) -> None:
     with listener(greeting) as port, pytest.raises(MissingRequirement, match="is no Dask scheduler"):
-        SchedulerAddress("tcp", "127.0.0.1", port).check()
+        check_scheduler(f"tcp://127.0.0.1:{port}")
 
 
 def test_that_a_closed_port_and_an_unknown_machine_are_told_apart() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-    with pytest.raises(MissingRequirement, match="nothing listens on port"):
-        SchedulerAddress("tcp", "127.0.0.1", port).check()
-    with pytest.raises(MissingRequirement, match="no machine called no-such-machine"):
-        SchedulerAddress("tcp", "no-such-machine.invalid", 8786).check()
+    with pytest.raises(MissingRequirement, match="refused"):
+        check_scheduler(f"tcp://127.0.0.1:{port}")
+    with pytest.raises(MissingRequirement, match=r"no-such-machine.invalid:8786 \((?!.*refused)"):
+        check_scheduler("tcp://no-such-machine.invalid:8786")

@@ -102,11 +102,9 @@ def test_that_who_works_is_asked_for_as_needed(dialog):
     assert "ca.pem" in dialog.state.text()
 
 
-@pytest.mark.parametrize(
-    ("address", "sentence"),
-    [("", "no host"), ("login", "no port"), ("http://login:8787", "begins with http")],
-)
-def test_that_an_address_is_judged_while_it_is_typed(dialog, address, sentence):
+@pytest.mark.parametrize("address", ["", "login", "http://login:8787"])
+def test_that_an_address_is_judged_while_it_is_typed(dialog, address):
+    sentence = f"The address {address!r} has not the form tcp://HOST:8786"
     dialog.workers.executor.setCurrentIndex(2)
     dialog.workers.address.setText(address)
     assert sentence in dialog.state.text()

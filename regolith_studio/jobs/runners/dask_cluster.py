@@ -10,7 +10,7 @@ import uuid
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 from urllib.parse import urlsplit
 
 from regolith_studio.errors import InputError, MissingRequirement
@@ -26,82 +26,56 @@ ANSWER_SECONDS = 4.0
 SCHEMES = ("tcp", "tls")
 MAX_GREETING = 1 << 16
 """Bytes; a scheduler begins with the length of a message of some hundred."""
-_FORM = "it has the form tcp://HOST:8786 or tls://HOST:8786"
 NEEDED = 'This needs Dask, which is an extra: pip install "regolith-studio[cluster]".'
 
 
-@dataclass(frozen=True)
-class SchedulerAddress:
-    """Where a scheduler listens."""
-
-    scheme: str
-    host: str
-    port: int
-
-    @classmethod
-    def parse(cls, text: str) -> Self:
-        """From ``tcp://host:port``, ``tls://host:port`` or ``host:port``."""
-        given = text.strip()
+def parsed_address(text: str) -> str:
+    """The address of a scheduler in full, from ``tcp://host:port``, ``tls://host:port`` or ``host:port``."""
+    given = text.strip()
+    try:
         parts = urlsplit(given if "://" in given else f"tcp://{given}")
-        if parts.scheme not in SCHEMES:
-            raise InputError(f"The address {given} begins with {parts.scheme}://; {_FORM}.")
-        try:
-            port = parts.port
-        except ValueError:
-            raise InputError(
-                f"The address {given} has a port that is no number up to 65535; {_FORM}."
-            ) from None
-        if not parts.hostname or port is None:
-            missing = "host" if not parts.hostname else "port"
-            raise InputError(f"The address {given or 'that was given'} has no {missing}; {_FORM}.")
-        return cls(parts.scheme, parts.hostname, port)
+        valid = parts.scheme in SCHEMES and parts.hostname and parts.port
+    except ValueError:  # a port that is no number up to 65535, or half a pair of brackets
+        valid = False
+    if not valid:
+        raise InputError(
+            f"The address {given!r} has not the form tcp://HOST:8786 or tls://HOST:8786, "
+            "with a port from 1 to 65535."
+        )
+    return parts.geturl()
 
-    def __str__(self) -> str:
-        host = f"[{self.host}]" if ":" in self.host else self.host
-        return f"{self.scheme}://{host}:{self.port}"
 
-    def check(self) -> None:
-        """Check that a Dask scheduler answers, within seconds.
+def check_scheduler(address: str) -> None:
+    """Check that a Dask scheduler answers at an address in full, within seconds.
 
-        Dask's own client tries for half a minute, and takes the answer of a web server for a message length.
-        """
-        deadline = time.monotonic() + ANSWER_SECONDS
-        with self._connect(deadline) as connection:
-            if self.scheme == "tcp":
-                connection.settimeout(max(0.1, deadline - time.monotonic()))
-                self._check_greeting(connection)
-
-    def _connect(self, deadline: float) -> socket.socket:
-        while True:
-            try:
-                return socket.create_connection((self.host, self.port), max(0.1, deadline - time.monotonic()))
-            except socket.gaierror as error:
-                raise MissingRequirement(
-                    f"No cluster answers at {self}: there is no machine called {self.host}."
-                ) from error
-            except ConnectionRefusedError as error:  # it may be about to start
-                if time.monotonic() + 0.2 > deadline:
-                    raise MissingRequirement(
-                        f"No cluster answers at {self}: the machine is there, but nothing listens on port "
-                        f"{self.port}."
-                    ) from error
-                time.sleep(0.2)
-            except OSError as error:
-                raise MissingRequirement(
-                    f"No cluster answers at {self} ({error.strerror or error})."
-                ) from error
-
-    def _check_greeting(self, connection: socket.socket) -> None:
-        """A scheduler sends first: eight bytes of message length, little-endian."""
+    Dask's own client tries for half a minute, and takes the answer of a web server for a message length.
+    """
+    place, deadline = urlsplit(address), time.monotonic() + ANSWER_SECONDS
+    with _connection(address, place.hostname or "", place.port or 0, deadline) as connection:
+        if place.scheme != "tcp":
+            return
+        connection.settimeout(max(0.1, deadline - time.monotonic()))
+        # A scheduler sends first: eight bytes of message length, little-endian.
         try:
             greeting = connection.recv(8, getattr(socket, "MSG_WAITALL", 0))
         except OSError:
             greeting = b""
-        if len(greeting) < 8 or not 0 < int.from_bytes(greeting, "little") < MAX_GREETING:
-            raise MissingRequirement(
-                f"What answers at {self} is no Dask scheduler; take the scheduler's port (usually 8786), "
-                "not of its dashboard (8787) or of a worker, and tls:// where it is encrypted."
-            )
+    if len(greeting) < 8 or not 0 < int.from_bytes(greeting, "little") < MAX_GREETING:
+        raise MissingRequirement(
+            f"What answers at {address} is no Dask scheduler; take the scheduler's port (usually 8786), "
+            "not of its dashboard (8787) or of a worker, and tls:// where it is encrypted."
+        )
+
+
+def _connection(address: str, host: str, port: int, deadline: float) -> socket.socket:
+    while True:
+        try:
+            return socket.create_connection((host, port), max(0.1, deadline - time.monotonic()))
+        except OSError as error:
+            if not isinstance(error, ConnectionRefusedError) or time.monotonic() + 0.2 > deadline:
+                reason = error.strerror or error
+                raise MissingRequirement(f"No cluster answers at {address} ({reason}).") from error
+            time.sleep(0.2)  # it may be about to start
 
 
 @dataclass(frozen=True)
@@ -170,7 +144,11 @@ class DaskRunner:
         if address.startswith("tls://") and tls is None:
             raise InputError(f"The address {address} is encrypted: give certificate, key and authority.")
         _distributed()
-        self.address = _checked(address, tls) if address else ""
+        if tls:
+            tls.security()
+        self.address = parsed_address(address) if address else ""
+        if self.address:
+            check_scheduler(self.address)
         self._open: set[_DaskHandle] = set()
         self._lock = threading.Lock()
         self._cluster = None if self.address else _local_cluster(workers or cores())
@@ -327,15 +305,6 @@ def _local_cluster(workers: int) -> Any:
         memory_limit=memory_limit(workers),
         silence_logs=logging.CRITICAL,  # what goes wrong is an event of the run
     )
-
-
-def _checked(address: str, tls: TlsFiles | None) -> str:
-    """The address in full, where a scheduler answers."""
-    if tls:
-        tls.security()
-    place = SchedulerAddress.parse(address)
-    place.check()
-    return str(place)
 
 
 def _connect(place: Any, tls: TlsFiles | None) -> Any:

@@ -26,7 +26,7 @@ from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.executor import TLS_NAMES, ExecutorSettings
-from regolith_studio.jobs.runners.dask_cluster import SchedulerAddress
+from regolith_studio.jobs.runners.dask_cluster import parsed_address
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
@@ -156,13 +156,14 @@ class WorkersField(QWidget):
             return ExecutorSettings("processes", self.count.value())
         if executor == "local":
             return ExecutorSettings("dask", self.count.value())
-        address = SchedulerAddress.parse(self.address.text())
-        tls = self.tls.value() if address.scheme == "tls" else None
+        address = parsed_address(self.address.text())
+        encrypted = address.startswith("tls:")
+        tls = self.tls.value() if encrypted else None
         missing = [name for name in TLS_NAMES if tls and not (tls / name).is_file()]
-        if address.scheme == "tls" and (tls is None or missing):
+        if encrypted and (tls is None or missing):
             names = ", ".join(TLS_NAMES)
             raise InputError(tr("An encrypted cluster needs a folder with {names}.", names=names))
-        return ExecutorSettings("dask", 0, str(address), tls)
+        return ExecutorSettings("dask", 0, address, tls)
 
     def field_values(self) -> dict[str, str]:
         """For the next start."""
