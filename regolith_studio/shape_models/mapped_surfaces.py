@@ -23,7 +23,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.harmonics.sphere_grid import ring_basis, sphere_grid
+from regolith_studio.harmonics.sphere_grid import SphereGrid, ring_basis, sphere_grid
 from regolith_studio.messages import N_
 from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
@@ -120,6 +120,7 @@ MIN_MATCHED_DEGREE = 3
 """Degrees below belong to the ellipsoid, and their power is left alone."""
 LIMITS = (0.8, 1.5)
 """Of the factor of a degree."""
+FIT_STEPS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +198,30 @@ class MappedSurfaces:
         grid = sphere_grid((5 * self.l_max + 6 * self._base) // 10 + 1, self.l_max)
         radii = np.empty((len(picks), len(grid.directions)))
         mapped_radii(self._tables, picks, np.ascontiguousarray(inverses), grid.directions, radii)
-        return np.asarray(grid.expanded(radii), dtype=np.float64)
+        # Measured particles that are cut have ripples, as draws have that are cut alike.
+        return fitted_evenly(grid, radii) if self.loses_by_mapping else grid.expanded(radii)
+
+
+def fitted_evenly(grid: SphereGrid, radii: FloatArray) -> FloatArray:
+    """Least-squares coefficients (n, (l_max + 1)^2) of radii (n, k) at the nodes, weighted by r^-4.
+
+    What a cut at l_max leaves out of the tips of a long body comes back as ripples of one height everywhere,
+    which show as concentric rings where its flat sides are near the star point. The weights, those of an
+    error in 1 / r, leave the error where the radius is large. A radius of degree l_max is found exactly.
+    """
+    weights = radii**-4.0
+    weights /= weights.max(axis=1, keepdims=True)
+    rows = grid.expanded(radii)
+    # Conjugate gradients from the unweighted fit: six steps bring rings below what shading shows.
+    residual = grid.expanded(weights * (radii - grid.values(rows)))
+    direction, square = residual, (residual**2).sum(axis=1)
+    for _ in range(FIT_STEPS):
+        image = grid.expanded(weights * grid.values(direction))
+        step = (square / np.maximum((direction * image).sum(axis=1), 1e-300))[:, None]
+        rows, residual = rows + step * direction, residual - step * image
+        before, square = square, (residual**2).sum(axis=1)
+        direction = residual + (square / np.maximum(before, 1e-300))[:, None] * direction
+    return np.asarray(rows, dtype=np.float64)
 
 
 def roughness_gain(mapped: FloatArray, measured: FloatArray) -> FloatArray:
