@@ -54,16 +54,15 @@ class ConvexPolyhedron:
         """
         corners, triples = _dual_vertices(half_spaces)
         vertices, merged = _merged(corners)
-        kept, facets = [], []
-        along, across = _tangents(half_spaces.normals)
-        for plane in range(len(half_spaces)):
-            around = np.unique(merged[(triples == plane).any(axis=1)])
-            # A plane with fewer touches the polyhedron in a corner or an edge only.
-            if len(around) >= 3:
-                kept.append(plane)
-                facets.append(_ordered(around, vertices[around], along[plane], across[plane]))
+        planes, around = _ordered(vertices, triples, merged, half_spaces.normals)
+        counts = np.bincount(planes, minlength=len(half_spaces))
+        # A plane with fewer touches the polyhedron in a corner or an edge only.
+        kept, ends, places = counts >= 3, np.cumsum(counts), around.tolist()
+        facets = tuple(
+            tuple(places[end - count : end]) for end, count in zip(ends[kept], counts[kept], strict=True)
+        )
         solid = HalfSpaces(half_spaces.normals[kept], half_spaces.offsets[kept])
-        return cls(solid, vertices, tuple(facets))
+        return cls(solid, vertices, facets)
 
     @property
     def n_facets(self) -> int:
@@ -174,8 +173,15 @@ def _tangents(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, np.cross(normals, first)
 
 
-def _ordered(around: IntArray, corners: FloatArray, along: FloatArray, across: FloatArray) -> tuple[int, ...]:
-    """The facet's vertices counter-clockwise about its normal, from their `corners` and its tangents."""
-    spokes = corners - corners.mean(axis=0)
-    angle = np.arctan2(spokes @ across, spokes @ along)
-    return tuple(around[np.argsort(angle)].tolist())
+def _ordered(
+    vertices: FloatArray, triples: IntArray, merged: IntArray, normals: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """Planes, rising, and the vertices in them, counter-clockwise about each normal; shape (k,) both."""
+    pairs = np.unique(triples * len(vertices) + merged[:, None])
+    planes, around = pairs // len(vertices), pairs % len(vertices)
+    corners, counts = vertices[around], np.bincount(planes, minlength=len(normals))
+    middles = np.column_stack([np.bincount(planes, each, len(normals)) for each in corners.T])
+    spokes = corners - (middles / np.maximum(counts, 1)[:, None])[planes]
+    along, across = _tangents(normals)
+    angle = np.arctan2((spokes * across[planes]).sum(axis=1), (spokes * along[planes]).sum(axis=1))
+    return planes, around[np.lexsort((angle, planes))]
