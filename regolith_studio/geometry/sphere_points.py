@@ -1,6 +1,6 @@
 """Evenly spread directions on the unit sphere."""
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -18,6 +18,11 @@ def fibonacci_directions(n: int) -> FloatArray:
     """
     if n < 1:
         raise ValueError(f"n must be at least 1, got {n}")
+    return _spiral(n).copy()
+
+
+@lru_cache(maxsize=4)
+def _spiral(n: int) -> FloatArray:
     step = np.arange(n)
     # Bands of equal height on a sphere have equal areas (Archimedes); these are their middles.
     z = 1.0 - (2.0 * step + 1.0) / n

@@ -13,6 +13,11 @@ def test_that_fibonacci_directions_are_unit_vectors(n: int) -> None:
     assert np.linalg.norm(directions, axis=1) == pytest.approx(1.0, abs=1e-14)
 
 
+def test_that_directions_belong_to_who_asked_for_them() -> None:
+    fibonacci_directions(30)[:] = 0.0
+    assert np.linalg.norm(fibonacci_directions(30), axis=1) == pytest.approx(1.0)
+
+
 def test_that_fibonacci_directions_integrate_polynomials_over_the_sphere() -> None:
     x, y, z = fibonacci_directions(4000).T
     assert np.mean(z**2) == pytest.approx(1 / 3, abs=1e-6)
