@@ -51,6 +51,7 @@ class Session:
 
     - ``events``: signals of the session.
     - ``particles``, ``results``: all that is open, and what has been computed of the selected particle.
+    - ``left_out``: sentences on what was not opened with the particles, such as the rest of a large archive.
     - ``runs_folder``: folder of the simulations.
     - ``dataset_request``: dataset settings of a recipe of this session; ``None`` before representatives are
       chosen.
@@ -59,6 +60,7 @@ class Session:
     def __init__(self, runner: Runner, choices: Choices | None = None) -> None:
         self.events = SessionEvents()
         self.particles: tuple[ParticleEntry, ...] = ()
+        self.left_out: tuple[str, ...] = ()
         self.results = Results()
         self._runner = runner
         chosen = choices or Choices(target="fit")  # the window begins with the paper's chain
@@ -363,6 +365,7 @@ class Session:
             self.events.problems.emit(loaded.problems)
         if loaded.left_out:
             self.events.left_out.emit(loaded.left_out)
+        self.left_out = (*self.left_out, *loaded.left_out) if add else loaded.left_out
         kept = self.particles if add else ()
         fresh = unique_names(loaded.particles, [entry.id for entry in kept])
         found_refs = refs or [ref_by_source(particle) for particle in loaded.particles]

@@ -1264,10 +1264,6 @@
         <translation>Das Polyeder vergleichen mit</translation>
     </message>
     <message>
-        <source>Compare the sample with other materials first.</source>
-        <translation>Vergleichen Sie die Probe zuerst mit anderen Materialien.</translation>
-    </message>
-    <message>
         <source>Comparing</source>
         <translation>Vergleichen</translation>
     </message>
@@ -2710,6 +2706,10 @@
     <message>
         <source>How much detail: l_max</source>
         <translation>Wie viele Einzelheiten: l_max</translation>
+    </message>
+    <message>
+        <source>How near other materials are to the sample, and how many grams of each make the mixture that is nearest.</source>
+        <translation>Wie nahe andere Materialien der Probe sind, und wie viel Gramm von jedem die nächste Mischung ergeben.</translation>
     </message>
     <message>
         <source>How near simulants, and the best mixture of them, are to this sample</source>

@@ -9,12 +9,13 @@ import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import QItemSelectionModel, QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QFileDialog
+from PySide6.QtWidgets import QApplication, QFileDialog, QPushButton
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.readers.particles import LoadedParticles
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
 from regolith_studio.ui.appearance import FONT_SIZE
@@ -153,6 +154,9 @@ def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path,
     monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *_: (names, ""))
     page.commands()["match"]()
     panel = page.match
+    save = page.findChild(QPushButton, "match_save")
+    assert not save.isEnabled()
+    assert panel.unit.currentText() == "Micrometres (µm)"
     assert page.plots.currentWidget() is panel
     panel.start()  # twelve shipped particles
     wait(lambda: panel.card.record.state is ResultState.FAILED)
@@ -162,6 +166,7 @@ def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path,
     panel.start()
     wait(lambda: panel.found is not None, SECONDS)
     assert panel.found.match.parts[0].number_share == pytest.approx(0.25, abs=0.15)
+    assert save.isEnabled()
     assert panel.table.rows.rowCount() == 3
     assert not panel.picture.pixmap().isNull()
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path / "out"))
@@ -174,7 +179,7 @@ def test_that_what_a_project_keeps_of_the_page_comes_back(page):
     page.filter.setText("flat")
     page.scatter.set_axes("volume", "sphericity")
     column = [each.key for each in page.table.particles.columns].index("convexity")
-    page.table.horizontalHeader().sectionClicked.emit(column)
+    page.table.sortByColumn(column, Qt.SortOrder.DescendingOrder)
     assert page.statistics.choices()["key"] == "convexity"
     kept = page.state()
     page.statistics.choose({"key": "volume", "weighting": "volume"})
@@ -263,3 +268,22 @@ def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
     plot.canvas.getViewBox().setXRange(0, 1e4)
     assert plot.canvas.getAxis("bottom").range[1] >= 1e4
     plot.set_theme(plot.theme)
+
+
+def test_that_a_part_of_an_archive_is_called_one_as_long_as_it_is_shown(page, window, settled):
+    sentence = "Shown is a random part of the archive: 1,000 of 84,311, seed 0."
+    whole = LoadedParticles(window.session.open_particles)
+    window.session._replace_particles(replace(whole, left_out=(sentence,)))
+    settled(window)
+    assert page.assessment.isVisibleTo(page)
+    assert page.assessment.text() == sentence
+    page.filter.setText("S<")
+    assert "All particles are shown." in page.assessment.text()
+    page.filter.setText("")
+    assert page.assessment.text() == sentence
+    window.session._replace_particles(whole, add=True)
+    settled(window)
+    assert page.assessment.text() == sentence
+    window.session._replace_particles(whole)
+    settled(window)
+    assert not page.assessment.isVisibleTo(page)

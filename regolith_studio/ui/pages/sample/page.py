@@ -252,6 +252,7 @@ class SamplePage(PageWidget):
         self.filter.setAccessibleName(tr("Filter of the table"))
         self.filter.setPlaceholderText(tr("Filter: words and comparisons, such as  flat S<0.8 AR>1.5"))
         self.filter.setClearButtonEnabled(True)
+        self._problem = ""
         self.assessment = hint_label(role="warning")
         self.assessment.hide()
         self.table = named(ParticleTable(particle_columns()), "sample_table", tr("All particles"))
@@ -367,22 +368,27 @@ class SamplePage(PageWidget):
         self.statistics.choose({"key": self.table.particles.columns[column].key})
 
     def _filter(self, text: str) -> None:
+        keeps, self._problem = None, ""
         try:
             keeps = filter_of(in_english(with_decimal_point(text))) if text.strip() else None
         except RegolithError as error:
-            self.assessment.setText(tr("{problem} All particles are shown.", problem=translate(str(error))))
-            keeps = None
-            self.assessment.show()
-        else:
-            self.assessment.hide()
+            self._problem = tr("{problem} All particles are shown.", problem=translate(str(error)))
+        self._assess()
         self.table.set_filter(keeps)
         self._count()
 
     def _show_particles(self) -> None:
         self.table.set_entries(self._session.particles)
+        self._assess()
         self._count()
         self._show_pictures()
         self._show_current()
+
+    def _assess(self) -> None:
+        """Say what is wrong with the filter, or what was not opened."""
+        words = self._problem or " ".join(translate(each) for each in self._session.left_out)
+        self.assessment.setText(words)
+        self.assessment.setVisible(bool(words))
 
     def _count(self) -> None:
         seen, total = len(self.table.particles.rows), len(self._session.particles)

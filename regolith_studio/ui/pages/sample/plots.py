@@ -35,14 +35,14 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import has_weights, statistics_distribution, statistics_table
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.studies.matching import MatchedPart
-from regolith_studio.ui.dialogs.files import FolderDialog
+from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
 from regolith_studio.ui.layout import control_row, named, side_by_side, stacked, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
 from regolith_studio.ui.widgets.fields import ElidedComboBox, choice
-from regolith_studio.ui.widgets.labels import rich_symbol, short_number
+from regolith_studio.ui.widgets.labels import hint_label, rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import FontRowHeight, TextTable, definition
@@ -394,9 +394,17 @@ class MatchPanel(QWidget):
         self.candidates = named(QListWidget(), "match_candidates", spoken)
         self.cards = named(ElidedComboBox(), "match_cards", tr("Add a material card"))
         spoken = tr("Length unit of files without one")
-        self.unit = named(ElidedComboBox(), "match_unit", spoken, spoken)
+        units = {key: LABELS[key] for key in UNITS if key != "voxel"}
+        self.unit = choice("match_unit", spoken, units)
+        self.unit.setToolTip(spoken)
         self.table = TextTable("match_table", tr("Distances and masses"), [tr(each) for each in HEADINGS])
-        self.picture = QLabel(alignment=Qt.AlignmentFlag.AlignCenter)
+        self.picture = hint_label(
+            tr(
+                "How near other materials are to the sample, and how many grams of each make the mixture "
+                "that is nearest."
+            )
+        )
+        self.picture.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.picture.setMinimumSize(QSize(120, 60))
         self.picture.setAccessibleName(tr("Distances, masses of the mixture, and sizes"))
         self._place()
@@ -425,14 +433,12 @@ class MatchPanel(QWidget):
     def start(self) -> None:
         """Compare the open sample with the candidates."""
         sample = tuple(self._context.session.open_particles)
-        request = MatchRequest(self.unit.currentText())
+        request = MatchRequest(str(self.unit.currentData()))
         self.run.start(tr("Match"), Job(draw_match, (sample, self.names(), request)), self._show)
 
     def save(self) -> None:
         """Ask for a folder and write table and picture."""
-        if self._found is None:
-            self._context.toast.problem(tr("Compare the sample with other materials first."))
-            return
+        assert self._found is not None, "its button waits for a result"
         start = str(self._context.recall("folder", str(Path.home())))
         if name := FolderDialog.ask(self, tr("Folder of table and picture"), start):
             self._context.remember("folder", name)
@@ -443,6 +449,7 @@ class MatchPanel(QWidget):
 
     def _show(self, found: DrawnMatch) -> ResultRecord:
         self._found = found
+        self._saving.setEnabled(True)
         match = found.match
         self.table.set_rows([_cells(part) for part in (*match.parts, match.mixture)], _tips(found))
         self._picture.loadFromData(found.picture)
@@ -467,7 +474,6 @@ class MatchPanel(QWidget):
         for name, card in materials().items():
             self.cards.addItem(tr(card.label), name)
         self.cards.activated.connect(lambda _row: self.add([str(self.cards.currentData())]))
-        self.unit.addItems([unit for unit in UNITS if unit != "voxel"])
         buttons = []
         for name, text, act in (
             ("match_files", tr("Add files …"), self.ask_files),
@@ -477,13 +483,15 @@ class MatchPanel(QWidget):
         ):
             buttons.append(named(QPushButton(text), name))
             buttons[-1].clicked.connect(act)
+        self._saving = buttons[-1]
+        self._saving.setEnabled(False)
         lists = QWidget()
         rows = control_row(self.cards, self.unit), control_row(*buttons[:3])
         vbox((self.candidates, 1), *rows, parent=lists)
         upper = side_by_side([lists, self.table], [260, 340], stretch=1)
         results = stacked([upper, self.picture], [160, 160], stretch=1)
         vbox(self.card, (results, 1), parent=self, margins=(4, 4, 4, 4))
-        self.card.add(buttons[3])
+        self.card.add(self._saving)
         self.add([])
 
     def _ask_folder(self) -> None:
