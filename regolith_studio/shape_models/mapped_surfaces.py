@@ -120,6 +120,7 @@ MIN_MATCHED_DEGREE = 3
 """Degrees below belong to the ellipsoid, and their power is left alone."""
 LIMITS = (0.8, 1.5)
 """Of the factor of a degree."""
+GAIN_TERMS = 3
 FIT_STEPS = 6
 
 
@@ -229,11 +230,18 @@ def roughness_gain(mapped: FloatArray, measured: FloatArray) -> FloatArray:
 
     ``mapped``, ``measured``: coefficients of the radii of the same particles, shapes (n, (l_max + 1)^2).
 
-    Returns shape (l_max + 1,); ones for the lowest degrees.
+    Returns shape (l_max + 1,); ones for the lowest degrees. Above, its logarithm is a parabola in the degree:
+    a gain that jumps from one degree to the next would put rings about all that stands out.
     """
     ratio = np.sqrt(_power(measured) / np.maximum(_power(mapped), 1e-300))
+    matched = np.clip(ratio[MIN_MATCHED_DEGREE:], *LIMITS)
     ratio[:MIN_MATCHED_DEGREE] = 1.0
-    return np.asarray(np.clip(ratio, *LIMITS))
+    if len(matched) > GAIN_TERMS:
+        degree = np.linspace(-1.0, 1.0, len(matched))
+        fitted = np.polynomial.Polynomial.fit(degree, np.log(matched), GAIN_TERMS - 1)
+        matched = np.clip(np.exp(fitted(degree)), *LIMITS)
+    ratio[MIN_MATCHED_DEGREE:] = matched
+    return np.asarray(ratio)
 
 
 def _power(rows: FloatArray) -> FloatArray:

@@ -11,7 +11,12 @@ from regolith_studio.harmonics.sphere_grid import harmonics, sphere_grid
 from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
-from regolith_studio.shape_models.mapped_surfaces import fitted_evenly, mapped_radii, radius_tables
+from regolith_studio.shape_models.mapped_surfaces import (
+    fitted_evenly,
+    mapped_radii,
+    radius_tables,
+    roughness_gain,
+)
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models.sample_matched import MODEL, SampleMatchedSettings
 from regolith_studio.shape_models.realizations import virtual_mesh
@@ -50,6 +55,17 @@ def test_that_a_radius_without_higher_degrees_is_fitted_exactly(rough_sample: Ca
     rows = rough_sample(6, 5).coefficients
     grid = sphere_grid(9, 5)
     np.testing.assert_allclose(fitted_evenly(grid, grid.values(rows)), rows, atol=1e-12 * rows.max())
+
+
+def test_that_the_gain_follows_the_power_but_does_not_jump_between_degrees() -> None:
+    """Power that is 1.1² and 0.9² of the measured one in turn, times a rise of a third over the degrees."""
+    degree = np.floor(np.sqrt(np.arange(31**2))).astype(int)
+    mapped = np.random.default_rng(0).normal(size=(4, 31**2)) + 10.0 * (degree == 0)
+    asked = np.where(degree % 2, 1.1, 0.9) * (1 + degree / 90)
+    gain = roughness_gain(mapped, mapped * np.where(degree < 3, 1.0, asked))
+    assert (gain[:3] == 1.0).all()
+    np.testing.assert_allclose(gain[3:], 1 + np.arange(3, 31) / 90, rtol=0.03)
+    assert np.abs(np.diff(np.log(gain[3:]))).max() < 0.03
 
 
 def test_that_tables_hold_the_series_between_their_nodes_and_at_the_poles(
