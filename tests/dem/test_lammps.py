@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.distance import pdist
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
@@ -70,6 +71,17 @@ def test_that_balls_are_single_spheres_of_the_same_volume(boxes: Dataset) -> Non
     assert (away + radii[40:] < 0.3 * radius).all()  # nothing from outside reaches them
 
 
+def test_that_what_lammps_knows_of_reaches_over_the_longest_particle(boxes: Dataset) -> None:
+    """LAMMPS ends with an error where two spheres of a body are farther apart."""
+    prepared, settings = prepare(boxes, SMALL), LammpsSettings()
+    clumps = clumps_of(prepared, 30)
+    body, places, _ = clumps.atoms(clumps.centres, clumps.turns)
+    longest = max(float(pdist(places[body == each]).max()) for each in range(len(clumps.scales)))
+    assert longest <= clumps.extent <= 1.5 * longest
+    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0, clumps.extent)
+    assert f"comm_modify vel yes cutoff {clumps.extent!r}" in text
+
+
 def test_that_the_material_is_softened_only_as_far_as_asked(boxes: Dataset) -> None:
     prepared = prepare(boxes, SMALL)
     real = 30e9 / (3075 * 9.81 * prepared.mean_diameter)
@@ -100,11 +112,11 @@ def test_that_a_restart_does_the_rest_of_the_test_in_steps_half_as_long(boxes: D
     assert (rest.phase(0), rest.phase(rest.steps)) == ("lift", "rest")
     assert rest.time(rest.steps) == pytest.approx(plan.total, abs=4 * rest.step)
     assert rest.picture * rest.step == pytest.approx(plan.picture * plan.step)
-    text = script(prepared, LammpsSettings(), rest, 4.0, 30.0)
+    text = script(prepared, LammpsSettings(), rest, 4.0, 30.0, 1.0)
     assert text.count("region tube cylinder") == 1
     assert f"variable up equal {rest.raised!r}+" in text
     over = plan.restarted(plan.total - 1.0)
-    assert "tube" not in script(prepared, LammpsSettings(), over, 4.0, 30.0)
+    assert "tube" not in script(prepared, LammpsSettings(), over, 4.0, 30.0, 1.0)
     assert over.rim(0) == float("inf")
 
 
@@ -112,7 +124,7 @@ def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
     contact = ContactParameters(rolling_friction=0.1)
     case = ReposeCase(SMALL.test, contact, n_particles=40, cohesion="given")
     prepared, settings = prepare(boxes, case), LammpsSettings()
-    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0)
+    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0, 1.0)
     energy = 0.010 / (3075 * 9.81 * prepared.mean_diameter**2) / 2
     assert f"jkr 40000.0 {viscosity(4e4, 0.2, 0.3)!r} 0.2 {energy!r}" in text
     assert "damping viscoelastic" in text
@@ -120,7 +132,7 @@ def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
     assert "mindlin_rescale NULL 1.0 0.8" in text
     assert "sds" in text
     dry = prepare(boxes, SMALL)
-    text = script(dry, settings, schedule(dry, settings, 30.0), 4.0, 30.0)
+    text = script(dry, settings, schedule(dry, settings, 30.0), 4.0, 30.0, 1.0)
     assert "hertz/material 40000.0 0.3 0.2" in text
     assert "rolling none" in text
     assert "damping tsuji" in text
@@ -130,7 +142,7 @@ def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
 def test_that_lammps_is_given_the_restitution_that_is_set(boxes: Dataset, restitution: float) -> None:
     contact = ContactParameters(restitution=restitution)
     prepared, settings = prepare(boxes, replace(SMALL, contact=contact)), LammpsSettings()
-    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0)
+    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0, 1.0)
     assert set(re.findall(r"hertz/material 40000.0 (\S+) 0.2", text)) == {str(restitution)}
 
 

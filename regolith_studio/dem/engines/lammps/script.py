@@ -87,6 +87,12 @@ class Clumps:
             np.concatenate([radius, COMPANION * radius[alone]]),
         )
 
+    @property
+    def extent(self) -> float:
+        """Distance that no two centres of spheres of one particle exceed."""
+        far = [float(np.linalg.norm(shape.spheres[:, :3], axis=1).max()) for shape in self.shapes]
+        return float((2.0 * np.array(far)[self.class_index] * self.scales).max())
+
     def inertias(self) -> FloatArray:
         """Of every particle about its centre, along the axes of space, shape (n, 3, 3)."""
         own = np.array([shape.inertia for shape in self.shapes])[self.class_index]
@@ -264,9 +270,14 @@ def bodies_file(clumps: Clumps, motion: FloatArray) -> str:
 
 
 def script(
-    prepared: PreparedCase, settings: LammpsSettings, plan: Schedule, radius: float, top: float
+    prepared: PreparedCase,
+    settings: LammpsSettings,
+    plan: Schedule,
+    radius: float,
+    top: float,
+    extent: float,
 ) -> str:
-    """The input of LAMMPS; the snapshots are ``body.*.dump``."""
+    """The input of LAMMPS for clumps of this extent; the snapshots are ``body.*.dump``."""
     case = prepared.case
     friction = case.contact.static_friction
     plate, wall = (
@@ -283,13 +294,14 @@ def script(
     )
     # Neighbours are listed to 0.12 d beyond contact: 100 clumps take 10.4, 10.5, 17.8 and 30.5 s of processor
     # time with 0.05, 0.12, 0.3 and 0.6.
+    # Ghosts reach over a whole particle: LAMMPS refuses bodies that are longer than neighbours are far.
     # The box grows along x and y (boundary s): a rounded clump without rolling resistance rolls on at
     # constant speed and would leave a fixed one.
     return f"""units lj
 atom_style hybrid sphere bond
 boundary s s f
 newton off
-comm_modify vel yes
+comm_modify vel yes cutoff {extent!r}
 read_data clumps.data
 neighbor 0.12 bin
 neigh_modify delay 0 every 1 check yes exclude molecule/intra all

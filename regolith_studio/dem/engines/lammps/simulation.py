@@ -124,7 +124,8 @@ def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, None]:
     run.first = None
     (folder / "clumps.data").write_text(data_file(run.clumps, 12.0 * radius, run.top))
     (folder / "bodies.txt").write_text(bodies_file(run.clumps, state.motion))
-    (folder / "in.repose").write_text(script(run.prepared, run.settings, run.plan, radius, run.top))
+    text = script(run.prepared, run.settings, run.plan, radius, run.top, run.clumps.extent)
+    (folder / "in.repose").write_text(text)
     words, environment = command()
     words = [*words, "-in", "in.repose", "-log", "log.lammps"]
     try:
