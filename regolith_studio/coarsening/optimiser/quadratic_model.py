@@ -225,7 +225,8 @@ def _sweep(
             continue
         slope = share * slopes[r] - residuals[r]
         for s in range(len(residuals)):
-            slope += share * products[r, s] * multipliers[s]
+            if multipliers[s] != 0.0:
+                slope += share * products[r, s] * multipliers[s]
         value = min(high[r], max(low[r], multipliers[r] - slope / (diagonal * (1.0 + DEPENDENT))))
         largest = max(largest, abs(value - multipliers[r]))
         multipliers[r] = value
@@ -246,36 +247,55 @@ def _solve_free(
     """Go from the multipliers towards those that are best for the ones inside their bounds, up to a bound.
 
     They stay where the value of the dual would rise: rows that depend on each other may have no best ones.
+    The system has rows for these only, often five of twenty.
     """
-    m = len(residuals)
+    m, count = len(residuals), 0
     for r in range(m):
-        free = low[r] < multipliers[r] < high[r]
-        right = residuals[r] - share * slopes[r]
+        count += low[r] < multipliers[r] < high[r]
+    i = 0
+    for r in range(m):
+        if not low[r] < multipliers[r] < high[r]:
+            continue
+        j, right = 0, residuals[r] - share * slopes[r]
         for s in range(m):
-            both = free and low[s] < multipliers[s] < high[s]
-            factor[r, s] = share * products[r, s] if both else (1.0 if r == s else 0.0)
-            if free and not both:
+            if low[s] < multipliers[s] < high[s]:
+                factor[i, j] = share * products[r, s]
+                j += 1
+            else:
                 right -= share * products[r, s] * multipliers[s]
-        factor[r, m] = right if free else multipliers[r]
-    if not solve_in_place(factor):
+        factor[i, count] = right
+        i += 1
+    if not solve_in_place(factor[:count, : count + 1]):
         return
-    part = 1.0
+    part, i = 1.0, 0
     for r in range(m):
-        way = factor[r, m] - multipliers[r]
-        room = high[r] - multipliers[r] if way > 0.0 else low[r] - multipliers[r]
-        if abs(room) < part * abs(way):
-            part = room / way
-    rise = 0.0
+        if low[r] < multipliers[r] < high[r]:
+            factor[i, count] -= multipliers[r]
+            way = factor[i, count]
+            room = high[r] - multipliers[r] if way > 0.0 else low[r] - multipliers[r]
+            if abs(room) < part * abs(way):
+                part = room / way
+            i += 1
+    rise, i = 0.0, 0
     for r in range(m):
-        way, pull = factor[r, m] - multipliers[r], share * slopes[r] - residuals[r]
+        if not low[r] < multipliers[r] < high[r]:
+            continue
+        j, pull = 0, share * slopes[r] - residuals[r]
         for s in range(m):
-            there = multipliers[s] + 0.5 * part * (factor[s, m] - multipliers[s])
+            there = multipliers[s]
+            if low[s] < multipliers[s] < high[s]:
+                there += 0.5 * part * factor[j, count]
+                j += 1
             pull += share * products[r, s] * there
-        rise += way * pull
+        rise += factor[i, count] * pull
+        i += 1
     if rise < 0.0:
+        i = 0
         for r in range(m):
-            value = multipliers[r] + part * (factor[r, m] - multipliers[r])
-            multipliers[r] = min(high[r], max(low[r], value))
+            if low[r] < multipliers[r] < high[r]:
+                value = multipliers[r] + part * factor[i, count]
+                multipliers[r] = min(high[r], max(low[r], value))
+                i += 1
 
 
 @kernel_noalloc
