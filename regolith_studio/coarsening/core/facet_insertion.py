@@ -52,15 +52,17 @@ def insert_lost_facets(
         if len(lost) == 0:
             break
         vertices, triples = polyhedron.vertices, polyhedron.triples
-        rooms = np.empty(len(vertices))
+        rooms, neighbours = np.empty(len(vertices)), np.empty((len(vertices), 3), dtype=np.int64)
+        fill_neighbours(polyhedron.edges, neighbours)
+        corners = normals, vertices, triples, neighbours, directions, first, distance, depth
         free = _not_touching(vertices, axes)
-        at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
+        at = _best_corner(*corners, free, rooms)
         if not rooms[at] > 0.0:
             free[:] = True
-            at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
+            at = _best_corner(*corners, free, rooms)
         for _ in range(passed):
             free[at] = False
-            at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
+            at = _best_corner(*corners, free, rooms)
         if not rooms[at] > 0.0:
             break
         cut = normals[triples[at]].sum(axis=0)
@@ -82,10 +84,24 @@ def _not_touching(vertices: FloatArray, axes: FloatArray | None) -> BoolArray:
 
 
 @kernel_noalloc
+def fill_neighbours(edges: IntArray, neighbours: IntArray) -> None:
+    """The three vertices that share an edge with each, in ascending order, (v, 3)."""
+    for v in range(len(neighbours)):
+        neighbours[v, 0] = neighbours[v, 1] = neighbours[v, 2] = len(neighbours)
+    for e in range(len(edges)):
+        for end in range(2):
+            v, other = edges[e, end], edges[e, 1 - end]
+            for k in range(3):
+                if other < neighbours[v, k]:
+                    other, neighbours[v, k] = neighbours[v, k], other
+
+
+@kernel_noalloc
 def _best_corner(
     normals: FloatArray,
     vertices: FloatArray,
     triples: IntArray,
+    neighbours: IntArray,
     directions: FloatArray,
     first: IntArray,
     distance: FloatArray,
@@ -102,20 +118,19 @@ def _best_corner(
         rooms[v] = 0.0
         if not free[v]:
             continue
-        normal, count = _corner_normal(normals, triples, v), 0
+        normal = _corner_normal(normals, triples, v)
         one = two = three = (0.0, 0.0, 0.0)
         room = np.inf
-        for u in range(len(vertices)):
-            if _share_edge(triples, u, v):
-                edge = mixed(row(vertices, u), 1.0, row(vertices, v), -1.0)
-                fall = -dot(edge, normal)
-                room, count = min(room, fall), count + 1
-                edge = mixed(edge, 1.0 / max(fall, 1e-300), edge, 0.0)  # down to one below the corner
-                one, two, three = two, three, edge
+        for k in range(3):
+            edge = mixed(row(vertices, neighbours[v, k]), 1.0, row(vertices, v), -1.0)
+            fall = -dot(edge, normal)
+            room = min(room, fall)
+            edge = mixed(edge, 1.0 / max(fall, 1e-300), edge, 0.0)  # down to one below the corner
+            one, two, three = two, three, edge
         below = _below(depth, room)
         sides = cross(mixed(two, 1.0, one, -1.0), mixed(three, 1.0, one, -1.0))
         # Twice the least area, or the cut would soon count as lost again.
-        if count == 3 and room > 0.0 and 0.5 * below * below * length(sides) > 2.0 * MIN_FACET:
+        if room > 0.0 and 0.5 * below * below * length(sides) > 2.0 * MIN_FACET:
             rooms[v] = room
     at, max_overhang = int(rooms.argmax()), -np.inf
     enough = max(MIN_CUT / depth, ROOMY * rooms[at])
@@ -151,13 +166,3 @@ def _corner_normal(normals: FloatArray, triples: IntArray, v: int) -> Vector:
     normal = mixed(row(normals, triples[v, 0]), 1.0, row(normals, triples[v, 1]), 1.0)
     normal = mixed(normal, 1.0, row(normals, triples[v, 2]), 1.0)
     return mixed(normal, 1.0 / length(normal), normal, 0.0)
-
-
-@kernel_noalloc
-def _share_edge(triples: IntArray, one: int, two: int) -> bool:
-    """Whether two vertices, given by their planes, share an edge."""
-    shared = 0
-    for i in range(3):
-        for j in range(3):
-            shared += triples[one, i] == triples[two, j]
-    return shared == 2

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
+from regolith_studio.coarsening.core.facet_insertion import fill_neighbours, insert_lost_facets
 from regolith_studio.coarsening.core.overlap import (
     add_shared_charges,
     crossings_of,
@@ -92,6 +92,19 @@ def test_that_the_derivative_of_the_shared_volume_is_that_of_finite_differences(
         for way in (1.0, -1.0)
     )
     assert ahead - behind == pytest.approx(gradient @ step, rel=1e-4)
+
+
+@pytest.mark.parametrize("n_facets", [6, 60])
+def test_that_neighbouring_corners_share_two_planes(n_facets: int) -> None:
+    normals = np.random.default_rng(3).normal(size=(n_facets, 3))
+    normals[:6] = CUBE
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    polyhedron = measure_polyhedron(normals, np.full(n_facets, 0.5))
+    neighbours, _ = filled(
+        fill_neighbours, (polyhedron.edges,), np.empty((len(polyhedron.triples), 3), dtype=np.int64)
+    )
+    shared = (polyhedron.triples[:, None, :, None] == polyhedron.triples[None, :, None, :]).sum(axis=(2, 3))
+    assert (neighbours == [np.flatnonzero(row == 2) for row in shared]).all()
 
 
 def test_that_a_redundant_plane_comes_back_as_a_facet(target: Target) -> None:
