@@ -25,8 +25,8 @@ _METHODS = (*TASKS, "compound")
 TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3, "compound": 63}
 """What can be compiled, in the order in which it is needed, and the files of machine code that each adds to
 those of the tasks before it. Annealing has no kernel that the exact method does not need too. The second line
-is for single pages; compounds are last, since the pages need minutes less than they do. What is compiled in
-the window instead keeps 2 MB a kernel there."""
+is for single pages; compounds are last, as they take minutes and few users need them at once. What is
+compiled in the window instead keeps 2 MB a kernel there."""
 
 _PARTS = {"read": "geometry", "fit": "harmonics", "describe": "geometry", "degrees": "harmonics"}
 _PARTS |= {"model": "shape_models", "scan": "imaging", "representatives": "dataset"}

@@ -226,7 +226,7 @@ def fitted_evenly(grid: SphereGrid, radii: FloatArray) -> FloatArray:
 
 
 def roughness_gain(mapped: FloatArray, measured: FloatArray) -> FloatArray:
-    """A factor for each degree with which mapped particles have the mean power of the measured ones.
+    """A factor for each degree with which mapped particles have nearly the mean power of the measured ones.
 
     ``mapped``, ``measured``: coefficients of the radii of the same particles, shapes (n, (l_max + 1)^2).
 
