@@ -55,12 +55,12 @@ def test_that_a_model_is_fitted_by_its_name_and_draws_particles_of_the_sizes_ask
 def test_that_a_dataset_is_exported_by_the_name_of_the_code(tmp_path: Path) -> None:
     particle = ellipsoid(12.0, 10.0, 9.0)
     dataset = rs.build_dataset([(particle, rs.coarsen(particle, 8, "quadric"))])
-    done = rs.export_dataset(dataset, "mfix", tmp_path / "mfix", accept_loss=True)
+    done = rs.export_dataset(dataset, "multi-sphere", tmp_path / "multi-sphere", accept_loss=True)
     assert {path.name for path in done.folder.iterdir()} >= {"README.txt", "export.json"}
     with pytest.raises(InputError, match="no exporter 'abaqus'"):
         rs.export_dataset(dataset, "abaqus", tmp_path / "abaqus")
     with pytest.raises(DatasetError, match="not an export's"):
-        rs.export_dataset(dataset, "mfix", tmp_path, accept_loss=True)
+        rs.export_dataset(dataset, "multi-sphere", tmp_path, accept_loss=True)
 
 
 @pytest.mark.parametrize("name", sorted(set(rs.__all__) - {"__version__"}))

@@ -234,13 +234,6 @@ def union_moments(spheres: FloatArray) -> UnionMoments:
     return UnionMoments(values, gradient, area)
 
 
-def bare_areas(spheres: FloatArray) -> FloatArray:
-    """Area of each sphere that lies in no other, shape (n,)."""
-    directions = fibonacci_directions(SURFACE_POINTS)
-    shares = [_bare_shares(spheres, k, directions).mean() for k in range(len(spheres))]
-    return np.asarray(4 * np.pi * spheres[:, 3] ** 2 * shares)
-
-
 def _bare_shares(spheres: FloatArray, k: int, directions: FloatArray) -> FloatArray:
     """Share of the patch around each point of sphere `k` that lies in no other sphere, shape (m,).
 

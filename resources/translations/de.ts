@@ -3208,14 +3208,6 @@
         <translation>Mondboden (veröffentlichte Verhältnisse und Größen)</translation>
     </message>
     <message>
-        <source>MFiX (glued spheres)</source>
-        <translation>MFiX (verklebte Kugeln)</translation>
-    </message>
-    <message>
-        <source>MUSEN (multispheres)</source>
-        <translation>MUSEN (Multikugeln)</translation>
-    </message>
-    <message>
         <source>Make particles</source>
         <translation>Partikel erzeugen</translation>
     </message>
@@ -7576,10 +7568,6 @@
         <translation>Kanten, Ecken und ebene Flächen; verschiedene Haft- und Gleitreibung</translation>
     </message>
     <message>
-        <source>elastic constants</source>
-        <translation>elastische Konstanten</translation>
-    </message>
-    <message>
         <source>elastic constants and friction: they belong to the materials of the input script</source>
         <translation>elastische Konstanten und Reibung: sie gehören zu den Materialien des Eingabeskripts</translation>
     </message>
@@ -7880,20 +7868,12 @@
         <translation>m, mit Vergröberung (coarse graining); y oben</translation>
     </message>
     <message>
-        <source>mass</source>
-        <translation>Masse</translation>
-    </message>
-    <message>
         <source>mass and inertia</source>
         <translation>Masse und Trägheit</translation>
     </message>
     <message>
         <source>mass fractions (as comments)</source>
         <translation>Massenanteile (als Kommentare)</translation>
-    </message>
-    <message>
-        <source>mass, unless each compound gets the density that the README states</source>
-        <translation>Masse, wenn nicht jeder Stoff die Dichte erhält, die in der README steht</translation>
     </message>
     <message>
         <source>max diameter</source>
@@ -7932,10 +7912,6 @@
         <translation>mediane Neuheit</translation>
     </message>
     <message>
-        <source>metres, coarse graining applied; each shape at the median size of its class</source>
-        <translation>Meter, mit Coarse-Graining; jede Form in der Mediangröße ihrer Klasse</translation>
-    </message>
-    <message>
         <source>middle edge of the bounding box</source>
         <translation>mittlere Kante des Hüllquaders</translation>
     </message>
@@ -7954,10 +7930,6 @@
     <message>
         <source>model</source>
         <translation>Modell</translation>
-    </message>
-    <message>
-        <source>moments of inertia are sums over the spheres</source>
-        <translation>Trägheitsmomente sind Summen über die Kugeln</translation>
     </message>
     <message>
         <source>n = {facets}</source>
@@ -8356,10 +8328,6 @@
         <translation>Kugeln</translation>
     </message>
     <message>
-        <source>spheres in bounding diameters; particles in SI, coarse graining applied</source>
-        <translation>Kugeln in Hüllkugeldurchmessern; Partikel in SI, mit Coarse-Graining</translation>
-    </message>
-    <message>
         <source>spheres in the frame of a shape of volume 1; diameters in micrometres</source>
         <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
     </message>
@@ -8602,10 +8570,6 @@
     <message>
         <source>weighting</source>
         <translation>Gewichtung</translation>
-    </message>
-    <message>
-        <source>weights and size distributions (sizes.csv has them)</source>
-        <translation>Gewichte und Größenverteilungen (stehen in sizes.csv)</translation>
     </message>
     <message>
         <source>weights and size distributions: only a sample is drawn</source>

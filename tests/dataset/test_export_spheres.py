@@ -1,24 +1,18 @@
-"""LIGGGHTS, PFC, EDEM, MFiX and MUSEN: what is written is read back by readers of the published formats."""
+"""LIGGGHTS, PFC and EDEM: what is written is read back by readers of the published formats."""
 
-import csv
 import re
 import shlex
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
-from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
-from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, ExportOptions, shape_names, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.sampling import pack_on_lattice
 from regolith_studio.errors import DatasetError
-from tests.tolerance import relative
 
 from .example import entry
 
@@ -36,7 +30,7 @@ def exports(dataset: Dataset, tmp_path_factory: pytest.TempPathFactory) -> dict[
     base = tmp_path_factory.mktemp("exports")
     return {
         key: write_export(dataset, EXPORTERS[key], base / key, OPTIONS, accept_loss=True).folder
-        for key in ("liggghts", "pfc", "edem", "mfix", "musen")
+        for key in ("liggghts", "pfc", "edem")
     }
 
 
@@ -133,132 +127,7 @@ def test_that_edem_gets_closed_convex_bodies_of_volume_one_in_their_principal_ax
         assert np.abs(body.moment_inertia - np.diag(np.diag(body.moment_inertia))).max() < 1e-5
 
 
-def mfix_phases(folder: Path) -> dict[int, np.ndarray]:
-    """Component spheres of each phase: x, y, z, diameter, area, in bounding diameters."""
-    version, *lines = (folder / "gsp_config.csv").read_text().splitlines()
-    assert version == "#version = 1"
-    rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
-    assert all(row[side] == -1 and row[f"{side}_na"] == 0 for row in rows for side in "wesntb")
-    return {
-        phase: np.array(
-            [[row[key] for key in ("x", "y", "z", "rel_d", "rel_sa")] for row in rows if row["pid"] == phase]
-        )
-        for phase in sorted({int(row["pid"]) for row in rows})
-    }
-
-
-def test_that_particles_of_mfix_have_the_mass_and_area_of_the_polyhedra(
-    dataset: Dataset, exports: dict[str, Path]
-) -> None:
-    phases = mfix_phases(exports["mfix"])
-    assert list(phases) == list(range(1, len(dataset) + 1))
-    drawn = pack_on_lattice(dataset, OPTIONS)
-    with (exports["mfix"] / "particle_input.csv").open() as file:
-        particles = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
-    assert len(particles) == OPTIONS.n_particles
-    for index, row in enumerate(particles):
-        spheres, shape = phases[int(row["phase_id"])], dataset.representatives[drawn.class_index[index]].shape
-        mass = row["density"] * np.pi / 6 * ((spheres[:, 3] * row["diameter"]) ** 3).sum()
-        assert mass == pytest.approx(DENSITY * np.pi / 6 * drawn.diameter[index] ** 3)
-        area = (spheres[:, 4] * row["diameter"] ** 2).sum()
-        hull = trimesh.convex.convex_hull(shape.vertices * drawn.scale[index])
-        assert area == pytest.approx(hull.area)
-        reach = np.linalg.norm(spheres[:, :3], axis=1) + spheres[:, 3] / 2
-        assert reach.max() == pytest.approx(0.5), "the bounding ball touches the outermost sphere"
-        turn = Rotation.from_quat([row[f"gsp_q{k}"] for k in (1, 2, 3, 4)], scalar_first=True)
-        assert turn.as_matrix() == pytest.approx(drawn.rotation_of(index))
-        assert [row[axis] for axis in "XYZ"] == pytest.approx(drawn.position[index])
-
-
-def test_that_the_keywords_of_mfix_describe_every_phase_and_every_pair(
-    dataset: Dataset, exports: dict[str, Path]
-) -> None:
-    lines = (exports["mfix"] / "solids.mfx").read_text().splitlines()
-    given = dict(line.split(" = ") for line in lines if not line.startswith("#"))
-    count = len(dataset)
-    assert int(given["mmax"]) == count
-    for phase in range(1, count + 1):
-        assert given[f"solids_model({phase})"] == "'GSP'"
-        assert float(given[f"ro_s0({phase})"]) < DENSITY, "overlapping spheres are added up"
-    domain = [re.fullmatch(r"# domain at least (\w): (\S+) to (\S+) m", line) for line in lines[1:4]]
-    placed = pack_on_lattice(dataset, OPTIONS).position
-    for axis, said in enumerate(domain):
-        assert said is not None
-        assert float(said[2]) < placed[:, axis].min() < placed[:, axis].max() < float(said[3])
-    restitution = [key for key in given if key.startswith("des_en_input(")]
-    assert restitution == [f"des_en_input({k})" for k in range(1, count * (count + 1) // 2 + 1)]
-
-
-def test_that_mfix_knows_the_size_of_a_phase_of_which_no_particle_was_drawn(dataset: Dataset) -> None:
-    files = EXPORTERS["mfix"].files(dataset, OPTIONS.replaced(n_particles=1))
-    given = dict(re.findall(r"(d_p0\(\d\)) = (\S+)", files["solids.mfx"].decode()))
-    rows = list(csv.DictReader(files["gsp_config.csv"].decode().splitlines()[1:]))
-    for phase, one in enumerate(dataset.representatives, start=1):
-        shares = [float(row["rel_d"]) for row in rows if int(row["pid"]) == phase]
-        volume = np.pi / 6 * float(given[f"d_p0({phase})"]) ** 3 * np.sum(np.power(shares, 3))
-        density = float(re.search(rf"ro_s0\({phase}\) = (\S+)", files["solids.mfx"].decode())[1])
-        median = COARSE * 1e-6 * one.sizes.quantile(0.5)
-        assert density * volume == pytest.approx(DENSITY * np.pi / 6 * median**3)
-
-
-def musen_database() -> Any:
-    """The message that MUSEN publishes for its database of agglomerates, empty."""
-    double, integer, text = (
-        descriptor_pb2.FieldDescriptorProto.TYPE_DOUBLE,
-        descriptor_pb2.FieldDescriptorProto.TYPE_INT32,
-        descriptor_pb2.FieldDescriptorProto.TYPE_STRING,
-    )
-    messages: dict[str, list[tuple[str, int, int | str, bool]]] = {
-        "Quatern": [(f"q{k}", k + 1, double, False) for k in range(4)],
-        "Vect": [(axis, k, double, False) for k, axis in enumerate("xyz", start=1)],
-        "Particle": [
-            ("coord", 1, "Vect", False), ("radius", 2, double, False), ("compound", 3, text, False),
-            ("quaternion", 5, "Quatern", False), ("contact_radius", 6, double, False),
-        ],
-        "Agglomerate": [
-            ("name", 1, text, False), ("key", 2, text, False), ("volume", 3, double, False),
-            ("particles", 4, "Particle", True), ("type", 6, integer, False),
-        ],
-        "Database": [("agglomerates", 1, "Agglomerate", True)],
-    }  # fmt: skip
-    file = descriptor_pb2.FileDescriptorProto(name="agglomerates.proto", syntax="proto3")
-    for name, fields in messages.items():
-        message = file.message_type.add(name=name)
-        for field, number, kind, repeated in fields:
-            entry = message.field.add(name=field, number=number, label=3 if repeated else 1)
-            if isinstance(kind, str):
-                entry.type, entry.type_name = entry.TYPE_MESSAGE, f".{kind}"
-            else:
-                entry.type = kind
-    pool = descriptor_pool.DescriptorPool()
-    pool.Add(file)
-    return message_factory.GetMessageClass(pool.FindMessageTypeByName("Database"))()
-
-
-def test_that_musen_reads_multispheres_with_the_volume_of_the_polyhedra(
-    dataset: Dataset, exports: dict[str, Path]
-) -> None:
-    database = musen_database()
-    database.ParseFromString((exports["musen"] / "shapes.madb").read_bytes())
-    readme = (exports["musen"] / "README.txt").read_text()
-    assert len(database.agglomerates) == len(dataset)
-    for found, one in zip(database.agglomerates, dataset.representatives, strict=True):
-        assert (found.type, found.name) == (1, found.key), "a multisphere"
-        volume = np.pi / 6 * (COARSE * 1e-6 * one.sizes.quantile(0.5)) ** 3
-        assert found.volume == relative(volume)
-        density = re.search(rf"{found.key}: .* density of its compound (\S+)", readme)
-        assert density is not None
-        summed = sum(4 / 3 * np.pi * each.radius**3 for each in found.particles)
-        assert float(density[1]) * summed == pytest.approx(DENSITY * volume)
-        for each in found.particles:
-            assert each.contact_radius == each.radius
-            assert each.compound == found.key
-            assert [each.quaternion.q0, each.quaternion.q1] == [1.0, 0.0]
-            centre = np.array([each.coord.x, each.coord.y, each.coord.z]) / volume ** (1 / 3)
-            assert (one.shape.half_spaces.normals @ centre < one.shape.half_spaces.offsets).all()
-
-
-@pytest.mark.parametrize("key", ["liggghts", "pfc", "mfix", "musen"])
+@pytest.mark.parametrize("key", ["liggghts", "pfc"])
 def test_that_spheres_in_place_of_polyhedra_must_be_accepted(
     dataset: Dataset, tmp_path: Path, key: str
 ) -> None:
