@@ -26,7 +26,6 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
     assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=4e-3)
     assert document["particles"][0]["deviation_by_scale"].keys() == {"form", "roundness", "roughness"}
     assert document["particles"][0]["deviation_by_scale"]["form"] < 1e-3
-    assert document["particles"][0]["wadell_roundness"] == pytest.approx(1.0, abs=2e-3)
     assert len(document["spectrum"]["values"]) == 7
     assert "orthonormal" in document["convention"]
 

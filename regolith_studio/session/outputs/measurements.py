@@ -16,7 +16,6 @@ from regolith_studio.harmonics.coefficients import (
     sample_spectrum,
 )
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.roundness import wadell_roundness
 from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.io.atomic import staged_together, write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
@@ -214,20 +213,11 @@ def fits_document(sample: FittedSample) -> dict[str, Any]:
         spectrum = power_spectrum(fit.coefficients)
         entry["power_spectrum"] = spectrum.values.tolist()
         entry["deviation_by_scale"] = roughness_split(spectrum)
-        entry["wadell_roundness"] = _roundness(fit)
         entry["notes"] = list(particle.notes)
     document["spectrum"] = _spectrum(sample.spectrum)
     document["arrays"] = arrays_document(fit_io.fits_arrays(names, sample.fits))
     document["failed"] = [{"name": name, "reason": sentence} for name, sentence in sample.failed]
     return document
-
-
-def _roundness(fit: HarmonicFit) -> float | None:
-    """``None`` where the expansion bounds no solid."""
-    try:
-        return wadell_roundness(fit)
-    except GeometryError:
-        return None
 
 
 def _spectrum(spectrum: PowerSpectrum | None) -> dict[str, Any] | None:
