@@ -102,7 +102,7 @@ def report(
     json: Json = False,
     jobs: Jobs = 1,
 ) -> None:
-    """Figs. 2 to 9 and Tables 1 and 2 of the paper for a sample: one HTML file, a PDF, and all tables.
+    """Figs. 2 to 9 and Tables 1 and 2 of the paper for a sample: one HTML file and all tables.
 
     What cannot be made says so in its place.
     """

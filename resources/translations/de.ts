@@ -2140,8 +2140,8 @@
         <translation>Bild 9: der Schüttwinkel</translation>
     </message>
     <message>
-        <source>Figs. 2 to 9 and Tables 1 and 2 of the paper for the open particles, as one HTML page, PDF, and tables. The command “report” writes the same.</source>
-        <translation>Bild 2 bis 9 und Tab. 1 und 2 des Artikels für die offenen Partikel, als eine HTML-Seite, PDF und Tabellen. Der Befehl „report“ schreibt dasselbe.</translation>
+        <source>Figs. 2 to 9 and Tables 1 and 2 of the paper for the open particles, as one HTML page and tables. The command “report” writes the same.</source>
+        <translation>Bild 2 bis 9 und Tab. 1 und 2 des Artikels für die offenen Partikel, als eine HTML-Seite und Tabellen. Der Befehl „report“ schreibt dasselbe.</translation>
     </message>
     <message>
         <source>Figs. 4 to 6: drawn and measured particles</source>

@@ -20,10 +20,10 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(write, "PARTS", {"Names": names})
 
 
-def test_that_the_command_writes_page_pdf_and_document(command, grains: Path, tmp_path: Path) -> None:
+def test_that_the_command_writes_page_and_document(command, grains: Path, tmp_path: Path) -> None:
     done = command("report", grains, "-o", tmp_path / "out", "--json", "--l-max", 6)
     assert (done.code, done.err) == (0, "")
-    assert done.json["files"] == ["report.html", "report.json", "report.pdf"]
+    assert done.json["files"] == ["report.html", "report.json"]
     assert done.json["problems"] == []
     text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert all(f"<p>{name}</p>" in text for name in ("grain-a", "grain-b", "grain-c"))

@@ -28,7 +28,6 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.summary import html_table
 from regolith_studio.session.recipe import VolumeEntry, recipe_of
 from regolith_studio.session.report import heap_sections, write
-from regolith_studio.session.report.pdf import column_groups
 from regolith_studio.session.report.sections import (
     ReportDraft,
     ReportFigure,
@@ -41,7 +40,6 @@ from regolith_studio.session.report.settings import PAGE, ReportSettings
 from regolith_studio.session.report.write import (
     DOCUMENT,
     MAX_TRIANGLES,
-    PDF,
     WrittenReport,
     report_page,
     write_report,
@@ -91,12 +89,6 @@ class Tags(HTMLParser):
             self._in_heading = False
 
 
-def n_pages(pdf: bytes) -> int:
-    assert pdf.startswith(b"%PDF-1.")
-    assert pdf.rstrip().endswith(b"%%EOF")
-    return len(re.findall(rb"/Type /Page\b(?!s)", pdf))
-
-
 @pytest.fixture(scope="module")
 def particles() -> tuple[Particle, ...]:
     chosen = ("angular-1", "bead-1", "flat-1")
@@ -135,17 +127,6 @@ def test_that_text_stands_at_the_left_of_its_column_and_numbers_at_the_right() -
     assert table.count('<td class="text">') == 6
 
 
-@pytest.mark.parametrize("letters", [30, 44, 200])
-def test_that_a_wide_table_of_the_pdf_is_cut_into_groups_of_whole_columns(letters: int) -> None:
-    widths = [10, 12, 4, 16, 8]
-    groups = column_groups(widths, letters)
-    assert [column for group in groups for column in group[1:]] == [1, 2, 3, 4]
-    for group in groups:
-        assert group[0] == 0
-        assert sum(widths[column] for column in group) + 2 * (len(group) - 1) <= letters
-    assert len(groups) == {30: 3, 44: 2, 200: 1}[letters]
-
-
 def test_that_page_and_document_name_settings_versions_and_hashes(
     small: WrittenReport, particles: tuple[Particle, ...]
 ) -> None:
@@ -157,10 +138,6 @@ def test_that_page_and_document_name_settings_versions_and_hashes(
         assert particle.source is not None
         assert entry["sha256"] == particle.source.sha256
         assert particle.source.sha256 in text
-
-
-def test_that_the_pdf_has_pages(small: WrittenReport) -> None:
-    assert n_pages((small.folder / PDF).read_bytes()) >= 1
 
 
 def test_that_the_same_sample_and_settings_give_the_same_bytes(
@@ -337,7 +314,6 @@ def test_that_a_real_report_has_every_figure_or_says_why_not(
     assert "at least 20 particles" in first.problems[0]
     assert "The losses cannot be compared today." in text
     assert "3.075" in text  # the density of Table 1
-    assert n_pages((first.folder / PDF).read_bytes()) >= 3
     (tmp_path / "other").mkdir()
     second = result_of(write_report(particles, tmp_path / "other" / "one", settings))
     assert contents(second.folder) == contents(first.folder)

@@ -1,4 +1,4 @@
-"""A report as data, the same for the page and the PDF: its sections, and what they are made from."""
+"""A report as data: its sections, and what they are made from."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -39,7 +39,7 @@ class ReportSection:
     - ``title``: heading.
     - ``paragraphs``: method and results, in plain text.
     - ``figures``, ``tables``: in this order.
-    - ``meshes``: by caption, to be turned in the page; the PDF has none.
+    - ``meshes``: by caption, to be turned in the page.
     - ``problem``: why the figure is missing, in one sentence.
     """
 

@@ -107,7 +107,7 @@ def _base64(content: bytes) -> str:
     return base64.b64encode(content).decode("ascii")
 
 
-PDF, DOCUMENT = "report.pdf", "report.json"
+DOCUMENT = "report.json"
 PARTS: Mapping[str, Callable[[ReportDraft, str], SectionSteps]] = {
     N_("The sample"): describe_sample,
     N_("Fig. 2: a particle and its spherical harmonics"): draw_degrees,
@@ -126,7 +126,7 @@ PARTS: Mapping[str, Callable[[ReportDraft, str], SectionSteps]] = {
 class WrittenReport:
     """A report on disk.
 
-    - ``folder``: holds :data:`PAGE`, :data:`PDF`, :data:`DOCUMENT` and a folder a figure.
+    - ``folder``: holds :data:`PAGE`, :data:`DOCUMENT` and a folder a figure.
     - ``files``: relative to the folder, sorted.
     - ``problems``: one sentence for each section that is missing.
     """
@@ -142,7 +142,7 @@ def write_report(
     settings: ReportSettings | None = None,
     workers: int | Executor = 1,
 ) -> Steps:
-    """Make all figures and tables of the paper for a sample, and a page and a PDF with them.
+    """Make all figures and tables of the paper for a sample, and a page with them.
 
     A section that fails says so in its place and stops nothing. Partial results are :class:`SectionBegun`.
     Returns :class:`WrittenReport`.
@@ -174,9 +174,6 @@ def write_report(
 def _write_files(
     stage: Path, draft: ReportDraft, sections: Sequence[ReportSection], problems: Sequence[str]
 ) -> None:
-    from regolith_studio.session.report.pdf import write_report_pdf  # matplotlib
-
-    write_report_pdf(sections, stage / PDF)
     write_bytes(stage / PAGE, report_page(sections).encode("utf-8", "backslashreplace"))
     document: dict[str, Any] = {
         "format": "regolith-studio report",

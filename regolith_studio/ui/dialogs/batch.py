@@ -505,7 +505,7 @@ class ReportDialog(RunDialog):
         form = QFormLayout()
         form.addRow(self.form)
         contents = tr(
-            "Figs. 2 to 9 and Tables 1 and 2 of the paper for the open particles, as one HTML page, PDF, and "
+            "Figs. 2 to 9 and Tables 1 and 2 of the paper for the open particles, as one HTML page and "
             "tables. The command “report” writes the same."
         )
         self.arrange(form, hint_label(contents), self.section, fields=(self.form,))
