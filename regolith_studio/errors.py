@@ -84,6 +84,7 @@ _REASONS = {
     errno.ENOENT: "there is no such file",
     errno.EACCES: "you are not allowed to",
     errno.EPERM: "you are not allowed to",
+    errno.EEXIST: "there is a file of that name",
     errno.EISDIR: "it is a folder",
     errno.ENOTDIR: "a part of its path is no folder",
     errno.ENAMETOOLONG: "its name is too long",

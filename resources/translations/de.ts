@@ -6200,6 +6200,10 @@
         <translation>Der Ordner Ihrer Datensätze</translation>
     </message>
     <message>
+        <source>The folder {path} cannot be made ({reason}).</source>
+        <translation>Der Ordner {path} kann nicht angelegt werden ({reason}).</translation>
+    </message>
+    <message>
         <source>The grey values around a grain give its volume more accurately than its mask, also in blurred scans.</source>
         <translation>Die Grauwerte um ein Korn geben sein Volumen genauer an als seine Maske, auch in unscharfen Scans.</translation>
     </message>
@@ -9106,6 +9110,10 @@
     <message>
         <source>{parts} parts, {count} facets</source>
         <translation>{parts} Teile, {count} Facetten</translation>
+    </message>
+    <message>
+        <source>{path} is a file, not a folder.</source>
+        <translation>{path} ist eine Datei, kein Ordner.</translation>
     </message>
     <message>
         <source>{phase}, {time} s simulated</source>

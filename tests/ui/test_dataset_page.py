@@ -254,6 +254,34 @@ def test_that_the_dataset_of_other_particles_is_neither_shown_nor_exported(chose
     assert chosen._folder is None, "the next export builds a dataset of these particles"
 
 
+def test_that_a_failed_export_keeps_the_earlier_ones(chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen._dataset is not None)
+    chosen.export_to(tmp_path / "out")
+    wait(lambda: len(chosen.exports.exports) == 2)
+    (tmp_path / "file").write_text("not a folder")
+    chosen.export_to(tmp_path / "file")
+    wait(lambda: chosen.result.record.state is ResultState.FAILED)
+    assert [each.text() for each in chosen.result.figures] == ["3", "2"]
+    assert not chosen.result.figures[1].isEnabled()
+    assert "there is a file of that name" in chosen.result.sentence.text()
+    assert [one.folder.parent for one in chosen.exports.exports] == [tmp_path / "out"] * 2
+
+
+def test_that_a_stopped_build_keeps_the_earlier_dataset(chosen, tmp_path, wait, monkeypatch) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen._dataset is not None)
+    chosen.sizes.set_text("log-normal:50,0.4")
+    started = []
+    monkeypatch.setattr(type(chosen._context), "start", lambda *_, **given: started.append(given))
+    chosen.build_in(tmp_path / "other")
+    assert chosen.result.record.state is ResultState.RUNNING
+    started[0]["stopped"]()
+    assert chosen.result.record.state is ResultState.STALE
+    assert chosen.result.figures[0].text() == "3"
+    assert str(tmp_path / "set") in chosen.result.sentence.text()
+
+
 @pytest.mark.slow
 def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page, tmp_path, wait) -> None:
     """15 g of spheres of 22 um and 3.1 g/cm3 are 868 million; a factor of 13 leaves 395,000."""

@@ -1,5 +1,8 @@
 """Asking for a folder to write into: a new one can be named, and nothing else gets the files."""
 
+import errno
+from pathlib import Path
+
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
@@ -70,9 +73,30 @@ def test_that_a_folder_that_is_there_is_taken_as_it_is(answered, tmp_path):
     assert (tmp_path / "old" / "kept.txt").read_text() == "mine"
 
 
-def test_that_a_folder_that_cannot_be_is_refused_with_a_sentence(answered, tmp_path):
+@pytest.mark.parametrize("by", ["key", "mouse"])
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("file/below", "cannot be made (a part of its path is no folder)."),
+        ("file", "is a file, not a folder."),
+        ("x" * 300, "cannot be made (its name is too long)."),
+    ],
+)
+def test_that_a_folder_that_cannot_be_made_is_refused_with_its_reason(answered, tmp_path, by, name, reason):
     (tmp_path / "file").write_text("not a folder")
-    chosen, said = answered(str(tmp_path / "file" / "below"))
+    chosen, said = answered(str(tmp_path / name), by)
     assert chosen == ""
     assert len(said) == 1
+    assert str(tmp_path / name) in said[0]
+    assert said[0].endswith(reason)
     assert (tmp_path / "file").read_text() == "not a folder"
+
+
+def test_that_the_reason_of_the_system_is_said(answered, tmp_path, monkeypatch):
+    def refuse(folder, **_settings):
+        raise OSError(errno.EROFS, "Read-only file system", str(folder))
+
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    chosen, said = answered(str(tmp_path / "new"))
+    assert chosen == ""
+    assert said == [f"The folder {tmp_path / 'new'} cannot be made (the file system is read-only)."]

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.errors import os_error_reason
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.particles import has_tables
@@ -236,10 +237,12 @@ class FolderDialog(QFileDialog):
             dialog.deleteLater()
 
     def accept(self) -> None:
-        """Make what was typed, if there is no such folder; where it cannot be, Qt says that there is none."""
+        """Make what was typed, if there is no such folder; where it cannot be, say why and stay open."""
         line = self._line()
-        if line is not None and line.text().strip():
-            self._make(self.directory().absolutePath(), line.text().strip())
+        typed = line.text().strip() if line is not None else ""
+        if problem := self._make(self.directory().absolutePath(), typed) if typed else "":
+            QMessageBox.warning(self, self.windowTitle(), problem)
+            return
         super().accept()
 
     def _line(self) -> QLineEdit | None:
@@ -253,9 +256,18 @@ class FolderDialog(QFileDialog):
                     button.setEnabled(True)
 
     @staticmethod
-    def _make(shown: str, typed: str) -> None:
-        folder = Path(shown) / Path(typed).expanduser()
+    def _make(shown: str, typed: str) -> str:
+        """Make a folder with those above it; returns why it cannot be made, or nothing."""
+        folder = Path(shown)
         try:
+            folder /= Path(typed).expanduser()
             folder.mkdir(parents=True, exist_ok=True)
-        except (OSError, ValueError):
-            return
+        except FileExistsError:
+            return tr("{path} is a file, not a folder.", path=folder)
+        except OSError as error:
+            reason = os_error_reason(error)
+        except (RuntimeError, ValueError) as error:  # no such user, a character that no path has
+            reason = str(error)
+        else:
+            return ""
+        return tr("The folder {path} cannot be made ({reason}).", path=folder, reason=reason)

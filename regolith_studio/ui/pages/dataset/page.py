@@ -209,7 +209,7 @@ class DatasetPage(PageWidget):
             self._show_survey,
             self._show_point,
             self._show_failure if to_build else None,
-            self._forget_dataset if to_build else None,
+            self._show_stopped if to_build else None,
             FIND,
         )
 
@@ -242,9 +242,16 @@ class DatasetPage(PageWidget):
             Job(build_dataset_folder, arguments),
             lambda built: self._take_built(built, exports),
             failed=self._show_failure,
-            stopped=self._forget_dataset,
+            stopped=self._show_stopped,
             queue=BUILD,
         )
+
+    def _show_stopped(self) -> None:
+        """Show the dataset that was there before a build was stopped, if there was one."""
+        if self._dataset is None:
+            self._forget_dataset()
+        else:
+            self._show_result()
 
     def _show_failure(self, failure: Failed) -> None:
         self._show_result()
@@ -308,7 +315,6 @@ class DatasetPage(PageWidget):
         """Write the selected formats, each into its own folder below `folder`."""
         if self._folder is None or not self.targets.chosen():
             return
-        self._exports = []
         arguments = (
             self._folder,
             self.targets.chosen(),
@@ -316,11 +322,11 @@ class DatasetPage(PageWidget):
             self.targets.options(),
             self.targets.consent(),
         )
+        self._context.remember("place", str(folder))
         self._context.start(
             tr("Exporting"),
             Job(export_dataset_folder, arguments),
             self._take_exports,
-            self._add_export,
             failed=self._show_failure,
             queue=EXPORT,
         )
@@ -503,15 +509,10 @@ class DatasetPage(PageWidget):
         else:
             self._context.toast.note(tr("The dataset is valid."))
 
-    def _add_export(self, one: ExportResult) -> None:
-        self._exports.append(one)
-        self.exports.show_exports(self._exports)
-        self._show_result()
-        self._lower.setCurrentIndex(1)
-
     def _take_exports(self, done: Sequence[ExportResult]) -> None:
         self._exports = list(done)
         self.exports.show_exports(done)
+        self._lower.setCurrentIndex(1)
         self._show_result()
         labels = [tr(EXPORTERS[each.key].label) for each in done]
         self._context.toast.note(
