@@ -20,7 +20,7 @@ from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.realizations import Realizations, Scale, acceptable, positive_rows
 from regolith_studio.shape_models.sample import sized
 from regolith_studio.shape_models.shape_features import powers
-from regolith_studio.shape_models.size_law import SizeLaw, checked_bounds
+from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
 
 # Part of what a seed means: chunks of another size would be other particles.
 CHUNK = 500
@@ -81,7 +81,7 @@ class SizedSampler(ChunkedSampler):
     if TYPE_CHECKING:  # at run time a dataclass would take the property for the default of its field
 
         @property
-        def sizes(self) -> SizeLaw:
+        def sizes(self) -> LogNormalSizes:
             """Law of equivalent radii."""
 
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:

@@ -1,39 +1,26 @@
 """Laws of particle size: how equivalent radii are distributed, counted by number.
 
-One class, a mixture of log-normals, is the log-normal law (one component), a kernel estimate in ln r
-(one component a particle) and a fitted mixture; the other is Rosin and Rammler's.
+A mixture of log-normals is the log-normal law (one component), a kernel estimate in ln r (one component a
+particle) and a fitted mixture.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import log_ndtr, logsumexp, ndtr, ndtri
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 
 Bounds = tuple[float, float] | None
-_TABLE = 4001
 MAX_MODES = 6
 MAX_RADIUS = 1e12
 FEWEST_A_MODE = 10
 """Particles for each part of a mixture of log-normal laws."""
 NARROWEST = 0.05
 _STEPS = 500
-
-
-class SizeLaw(Protocol):
-    """A distribution of equivalent radii."""
-
-    def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
-        """`n` radii inside `bounds`, and the component that each came from."""
-
-    def stored(self) -> dict[str, Any]:
-        """Plain values for JSON."""
 
 
 def checked_bounds(bounds: Bounds) -> Bounds:
@@ -154,108 +141,24 @@ class LogNormalSizes:
             "limits": None if self.limits is None else list(self.limits),
         }
 
-    @classmethod
-    def restored(cls, values: Mapping[str, Any]) -> "LogNormalSizes":
-        """A law from what it stored."""
-        limits = values["limits"] and (float(values["limits"][0]), float(values["limits"][1]))
-        return cls(values["weights"], values["means"], values["deviations"], limits)
 
-
-@dataclass(frozen=True)
-class RosinRammlerSizes:
-    """Share of the volume in particles larger than r is exp(-(r / scale)^spread), between two limits.
-
-    Counted by number the law diverges towards small particles, so that a lower limit is part of it.
-
-    ``scale``, ``spread``: radius that 36.8 % of the volume exceeds, and the exponent. ``smallest``,
-    ``largest``: limits of the radii.
-    """
-
-    scale: float
-    spread: float
-    smallest: float
-    largest: float
-
-    def __post_init__(self) -> None:
-        if not (self.scale > 0 and self.spread > 0 and 0 < self.smallest < self.largest < np.inf):
-            raise ValueError(f"scale, spread and limits must be positive and in order, got {self}")
-
-    @classmethod
-    def fitted(cls, radii: FloatArray) -> "RosinRammlerSizes":
-        """Maximum likelihood with each particle weighted by its volume; limits of the sample."""
-        # Over the largest radius, so that powers with the exponents of the search neither overflow nor all
-        # vanish.
-        weights = (radii / radii.max()) ** 3
-        weights /= weights.sum()
-        logs = np.log(radii / radii.max())
-
-        def score(spread: float) -> float:
-            # Minus the derivative of the likelihood by the exponent, with the likeliest scale for it
-            # inserted.
-            powers = weights * np.exp(spread * logs)
-            return float(powers @ logs / powers.sum() - 1 / spread - weights @ logs)
-
-        spread = float(brentq(score, 1e-2, 1e3))
-        scale = float(radii.max() * (weights @ np.exp(spread * logs)) ** (1 / spread))
-        # The limits must differ, also where all radii are equal.
-        return cls(scale, spread, float(radii.min()), float(radii.max() * (1 + 1e-9)))
-
-    def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
-        """Radii from the law by number, cut to `bounds` if given."""
-        shares = rng.random(n)
-        limits = checked_bounds(bounds)
-        logs, rising = self._table if limits is None else self._tabulated(*limits)
-        return np.exp(np.interp(shares, rising, logs)), np.zeros(n, dtype=np.int64)
-
-    @cached_property
-    def _table(self) -> tuple[FloatArray, FloatArray]:
-        return self._tabulated(self.smallest, self.largest)
-
-    def _tabulated(self, low: float, high: float) -> tuple[FloatArray, FloatArray]:
-        """ln r and the share of particles below it."""
-        logs = np.linspace(np.log(low), np.log(high), _TABLE)
-        # One float inwards, as exp(ln r) may round to a number beyond r.
-        logs[[0, -1]] = np.nextafter(np.log(low), np.inf), np.nextafter(np.log(high), -np.inf)
-        relative = logs - np.log(self.scale)
-        # Volume per step of ln r, x^k exp(-x^k) with x = r / scale and k the spread, over x^3 gives the
-        # number.
-        exponent = (self.spread - 3) * relative - np.exp(np.minimum(self.spread * relative, 700.0))
-        density = np.exp(exponent - exponent.max())
-        rising = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2)])
-        return logs, rising / rising[-1]
-
-    def stored(self) -> dict[str, Any]:
-        """Plain values for JSON."""
-        return {
-            "type": "rosin_rammler",
-            "scale": self.scale,
-            "spread": self.spread,
-            "smallest": self.smallest,
-            "largest": self.largest,
-        }
-
-
-SIZE_LAWS: Mapping[str, Callable[[FloatArray], SizeLaw]] = {
+SIZE_LAWS: Mapping[str, Callable[[FloatArray], LogNormalSizes]] = {
     "kernel": LogNormalSizes.kernel,
     "log_normal": LogNormalSizes.log_normal,
     "log_normal_mixture": LogNormalSizes.mixture,
-    "rosin_rammler": RosinRammlerSizes.fitted,
 }
 """What a law can be fitted as, from equivalent radii (n,)."""
 
 
-def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
+def size_law_from(values: Mapping[str, Any]) -> LogNormalSizes:
     """A law from what it stored.
 
     Raises InputError if the values are no law.
     """
     try:
         if values["type"] == "log_normal_mixture":
-            return LogNormalSizes.restored(values)
-        if values["type"] == "rosin_rammler":
-            return RosinRammlerSizes(
-                *(float(values[name]) for name in ("scale", "spread", "smallest", "largest"))
-            )
+            limits = values["limits"] and (float(values["limits"][0]), float(values["limits"][1]))
+            return LogNormalSizes(values["weights"], values["means"], values["deviations"], limits)
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"The size distribution is invalid: {error}.") from error
     raise InputError(f"There is no size distribution called {values['type']!r}.")

@@ -8208,10 +8208,6 @@
         <translation>Rollwiderstand</translation>
     </message>
     <message>
-        <source>rosin_rammler</source>
-        <translation>Rosin-Rammler</translation>
-    </message>
-    <message>
         <source>rpm</source>
         <translation>U/min</translation>
     </message>

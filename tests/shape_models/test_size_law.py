@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
-from scipy.stats import lognorm, weibull_min
+from scipy.stats import lognorm
 
 from regolith_studio.errors import InputError
-from regolith_studio.shape_models.size_law import SIZE_LAWS, LogNormalSizes, RosinRammlerSizes, size_law_from
+from regolith_studio.shape_models.size_law import SIZE_LAWS, LogNormalSizes, size_law_from
 
 RNG = np.random.default_rng
 
@@ -49,22 +49,6 @@ def test_that_the_limits_of_a_law_hold_where_no_other_range_is_asked_for() -> No
     assert law.draw(99, RNG(0), (3.0, 4.0))[0].min() >= 3.0
 
 
-def test_that_rosin_and_rammlers_law_holds_by_volume() -> None:
-    law = RosinRammlerSizes(10.0, 3.5, 0.5, 40.0)
-    values, _ = law.draw(200000, RNG(0))
-    weights = values**3 / (values**3).sum()
-    order = np.argsort(values)
-    share = np.cumsum(weights[order])
-    assert np.abs(share - weibull_min(3.5, scale=10.0).cdf(values[order])).max() < 0.01
-
-
-def test_that_the_fit_of_rosin_and_rammler_finds_the_law_that_drew() -> None:
-    values, _ = RosinRammlerSizes(10.0, 3.5, 0.5, 40.0).draw(100000, RNG(0))
-    found = RosinRammlerSizes.fitted(values)
-    assert found.scale == pytest.approx(10.0, rel=0.02)
-    assert found.spread == pytest.approx(3.5, rel=0.03)
-
-
 @pytest.mark.parametrize("key", sorted(SIZE_LAWS))
 def test_that_a_law_read_back_draws_the_same(key: str) -> None:
     law = SIZE_LAWS[key](RNG(0).lognormal(0, 0.3, 50))
@@ -74,7 +58,7 @@ def test_that_a_law_read_back_draws_the_same(key: str) -> None:
 
 @pytest.mark.parametrize(
     "values",
-    [{}, {"type": "cauchy"}, {"type": "rosin_rammler"}, {"type": "log_normal_mixture", "weights": [1.0]}],
+    [{}, {"type": "cauchy"}, {"type": "log_normal_mixture", "weights": [1.0]}],
 )
 def test_that_a_broken_law_is_refused(values: dict[str, object]) -> None:
     with pytest.raises(InputError, match="size distribution"):

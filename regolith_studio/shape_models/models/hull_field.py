@@ -63,7 +63,7 @@ from regolith_studio.shape_models.shape_features import (
     whole_features_of_radii,
     with_powers,
 )
-from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
+from regolith_studio.shape_models.size_law import SIZE_LAWS, LogNormalSizes, size_law_from
 
 RIDGE = 0.1
 """Of the regression, as a share of the number of particles, on standardised features."""
@@ -346,7 +346,7 @@ class HullField(SizedSampler):
     """
 
     numbers: GaussianCopula
-    sizes: SizeLaw
+    sizes: LogNormalSizes
     spectrum: FloatArray
     unit: str = "um"
     shift: FloatArray | None = None

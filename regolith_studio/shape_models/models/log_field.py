@@ -20,7 +20,7 @@ from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.protocol import checked_amplitudes
 from regolith_studio.shape_models.sample import Sample, directed, log_shapes
-from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
+from regolith_studio.shape_models.size_law import SIZE_LAWS, LogNormalSizes, size_law_from
 
 KEY = "log_field"
 SPECTRA = (N_("resampled"), N_("pooled"))
@@ -63,7 +63,7 @@ class LogField(SizedSampler):
     """
 
     spectrum: FloatArray
-    sizes: SizeLaw
+    sizes: LogNormalSizes
     unit: str = "um"
     reference_radius: float = 1.0
     exponents: FloatArray | None = None
