@@ -4,18 +4,13 @@ The spheres begin inside, each where it covers most of what is bare (the idea of
 Granular Matter 12, 459). Then centres and radii together descend the volume that polyhedron and union do not
 share, so that spheres may stand out a little, while volume, centroid and second moments of the union are kept
 at those of the polyhedron. The error is Jaccard's distance, as in Buchele et al. 2026 (arXiv 2603.05877).
-
-Masses of overlapping spheres for programs that add them up, as if none overlapped.
-
-Such a program takes every sphere as a solid ball. With masses in proportion to volume what overlaps counts
-more than once; masses of their own give the sum the polyhedron's mass, centre and inertia.
 """
 
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.optimize import lsq_linear, minimize
+from scipy.optimize import minimize
 from scipy.spatial.distance import cdist
 from scipy.special import expit
 from scipy.stats import qmc
@@ -25,54 +20,6 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.half_spaces import inscribed_ball
 from regolith_studio.geometry.sphere_points import fibonacci_directions
-
-LOWEST = 0.05
-"""Lowest mass of a sphere, in that which it has at equal density; some programs refuse spheres without."""
-EVENNESS = 1e-4
-"""Weight of equal density against the moments."""
-
-CENTRE_WEIGHT = 30.0
-"""Of mass and centre against inertia where few spheres cannot have all of it."""
-
-
-@dataclass(frozen=True, eq=False)
-class SphereMasses:
-    """Masses at density 1 of a polyhedron of any size.
-
-    - ``values``: of each sphere, shape (n,); they add up to the volume.
-    - ``centre_error``: distance of their centre from the centroid, in cube roots of the volume.
-    - ``inertia_error``: largest difference of an entry of the tensor of inertia about the centroid, over the
-      largest moment.
-    """
-
-    values: FloatArray
-    centre_error: float
-    inertia_error: float
-
-
-def sphere_masses(shape: Polyhedron, spheres: FloatArray) -> SphereMasses:
-    """Masses of solid balls, rows x, y, z, r, that together have the shape's mass, centre and inertia.
-
-    Among all that do, nearly those of the most even density; as near as it goes where few spheres cannot.
-    """
-    size = shape.volume ** (1 / 3)
-    centres, radii = (spheres[:, :3] - shape.centroid) / size, spheres[:, 3] / size
-    inertia = np.asarray(shape.mesh.inertia) / size**5
-    tensors = ((centres**2).sum(axis=1) + 0.4 * radii**2)[:, None, None] * np.eye(3)
-    tensors = tensors - centres[:, :, None] * centres[:, None, :]
-    upper = np.triu_indices(3)
-    first = CENTRE_WEIGHT * np.vstack([np.ones(len(spheres)), centres.T])
-    rows = np.vstack([first, tensors[:, *upper].T / inertia.max()])
-    goal = np.array([CENTRE_WEIGHT, 0.0, 0.0, 0.0, *(inertia[upper] / inertia.max())])
-    even = radii**3 / (radii**3).sum()
-    matrix = np.vstack([rows * even, EVENNESS * np.eye(len(spheres))])
-    solution = lsq_linear(matrix, np.concatenate([goal, np.full(len(spheres), EVENNESS)]), (LOWEST, np.inf))
-    masses = solution.x * even
-    masses /= masses.sum()
-    off = rows @ masses - goal
-    centre = float(np.linalg.norm(off[1:4])) / CENTRE_WEIGHT
-    return SphereMasses(masses * shape.volume, centre, float(np.abs(off[4:]).max()))
-
 
 PROBES = 4096
 """Points to be covered by the first spheres; a power of two for Sobol's sequence."""

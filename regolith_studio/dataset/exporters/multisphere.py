@@ -6,7 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors, sphere_masses
+from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
 
@@ -16,17 +16,14 @@ that their union has its volume. The mismatch is Jaccard's distance, 1 minus the
 both together:
 {rows}
 Programs that take the mass of the union get the right one. Programs that add up overlapping spheres do not:
-set mass and inertia by hand there (density x scale^3, moments in fit.csv); or, where a sphere may have a
-density of its own, give each the mass of its line in masses/ (density 1, scale^3), which add up to the
-polyhedron's mass, centre and inertia as nearly as fit.csv says (summed_...).
+set mass and inertia by hand there (density x scale^3, moments in fit.csv).
 A particle of diameter d has every number times d (pi/6)^(1/3). fit.csv: spheres, volume of the union, moments
-of inertia of the polyhedron (density 1), the errors of the union as shares (its moments of inertia at equal
-mass, the largest difference), and those of the sum (distance of the centre in cube roots of the volume)."""
+of inertia of the polyhedron (density 1), and the errors of the union as shares (its moments of inertia at
+equal mass, the largest difference)."""
 
 HEADER = (
     *("shape", "spheres", "union_volume", "moment_x", "moment_y", "moment_z"),
     *("volume_error", "area_error", "inertia_error", "jaccard_distance"),
-    *("summed_centre_error", "summed_inertia_error"),
 )
 
 
@@ -37,18 +34,13 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         errors = sphere_fit_errors(one.shape, spheres)
         text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
         files[f"spheres/{key}.txt"] = text.encode("ascii")
-        masses = sphere_masses(one.shape, spheres)
-        files[f"masses/{key}.txt"] = "".join(f"{mass!r}\n" for mass in masses.values.tolist()).encode("ascii")
         moments = np.diag(one.shape.mesh.inertia).tolist()
         volume = one.shape.volume * (1 + errors.volume)
-        rows.append(
-            (key, len(spheres), volume, *moments, *astuple(errors), masses.centre_error, masses.inertia_error)
-        )
+        rows.append((key, len(spheres), volume, *moments, *astuple(errors)))
         fits.append(
             f"  {key}: {len(spheres)} spheres, mismatch {errors.jaccard:.3f}, "
             f"volume {100 * errors.volume:+.2f} %, area {100 * errors.area:+.1f} %, "
-            f"moments of inertia up to {100 * errors.inertia:.2f} % off "
-            f"({100 * masses.inertia_error:.2f} % where spheres are added up with their own masses)"
+            f"moments of inertia up to {100 * errors.inertia:.2f} % off"
         )
     return files | {
         "fit.csv": csv_bytes([HEADER, *rows]),
