@@ -77,9 +77,10 @@ def main(
         if isinstance(step, Partial):
             study: ReposeStudy = step.value
             rows = [row(run) for run in study.runs]
-            content = {"engine": engine, "runs": rows, "differences": {"rows": differences(rows)}}
+            table = differences(rows)
+            content = {"engine": engine, "runs": rows, "differences": {"rows": table}}
             result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-    for name, numbers in content["differences"]["rows"].items():
+    for name, numbers in table.items():
         print(name, numbers)
 
 
@@ -96,6 +97,7 @@ def row(run: ReposeStudyRun) -> dict[str, Any]:
     measured = run.document["measurement"] or {}
     packing, checks = (run.document["packing"] or {}).get("heap") or {}, run.document["checks"] or {}
     shapes, _, friction = str(run.value).partition("@")
+    refusal = measured.get("reason") or run.document["problem"]
     return {
         "coarsening": shapes,
         "friction": float(friction or FRICTION),
@@ -105,7 +107,7 @@ def row(run: ReposeStudyRun) -> dict[str, Any]:
         "interval_deg": [rounded(each, 2) for each in measured.get("interval_deg") or []],
         "solid_fraction": rounded(checks.get("solid_fraction"), 4),
         "coordination_number": rounded(packing.get("coordination_number"), 3),
-        "problems": checks.get("problems", [run.document["problem"]]),
+        "problems": [*checks.get("problems", ()), *([refusal] if refusal else [])],
     }
 
 
