@@ -25,9 +25,9 @@ DIRECTIONS = {
     "x": N_("along x"),
     "y": N_("along y"),
     "z": N_("along z"),
-    "longest": N_("along Dmax"),
-    "intermediate": N_("along Dint"),
-    "shortest": N_("along Dmin"),
+    "longest": N_("along Dₘₐₓ"),
+    "intermediate": N_("along Dᵢₙₜ"),
+    "shortest": N_("along Dₘᵢₙ"),
     "eye": N_("towards the viewer"),
 }
 """Directions a section can be moved in; those of the box are its edges."""

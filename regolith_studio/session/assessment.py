@@ -84,7 +84,7 @@ def cost_of_imitating_the_fit(comparison: ParticleComparison) -> str:
     template = N_("Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.")
     distance = _percent(comparison.jaccard_distance)
     return Message(
-        template, symbol=_symbol(worst), error=_percent(comparison.errors[worst]), distance=distance
+        template, symbol=CATALOGUE[worst].symbol, error=_percent(comparison.errors[worst]), distance=distance
     )
 
 
@@ -96,16 +96,12 @@ def _met(coarsened: CoarseningResult, chosen: list[str]) -> str:
     if max(excess.values()) > CLOSE:
         worst = max(chosen, key=lambda key: coarsened.errors[key])
         template = N_("The largest error of a weighted descriptor is {error}, of {symbol}.")
-        return Message(template, symbol=_symbol(worst), error=_percent(coarsened.errors[worst]))
+        return Message(template, symbol=CATALOGUE[worst].symbol, error=_percent(coarsened.errors[worst]))
     bound = max(chosen, key=lambda key: held[key])
     if held[bound] > CLOSE:
         template = N_("All weighted descriptors are met but {symbol}: no convex polyhedron is below {error}.")
-        return Message(template, symbol=_symbol(bound), error=_percent(held[bound]))
+        return Message(template, symbol=CATALOGUE[bound].symbol, error=_percent(held[bound]))
     return N_("All weighted descriptors are met within 0.1 %.")
-
-
-def _symbol(key: str) -> str:
-    return CATALOGUE[key].symbol.replace("_", "")
 
 
 def _percent(share: float) -> str:

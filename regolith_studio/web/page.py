@@ -179,7 +179,7 @@ class ThreeViewPage:
         shown = {key: row for key, row in CATALOGUE.items() if not row.costly}
         return [
             [
-                f"{row.symbol.replace('_', '')} {row.unit_symbol}".strip(),
+                f"{row.symbol} {row.unit_symbol}".strip(),
                 *(f"{body[key]:.4g}" if body and key in body else "–" for body in bodies),
             ]
             for key, row in shown.items()

@@ -7208,16 +7208,16 @@
         <translation>allein</translation>
     </message>
     <message>
-        <source>along Dint</source>
-        <translation>entlang Dint</translation>
+        <source>along Dᵢₙₜ</source>
+        <translation>entlang Dᵢₙₜ</translation>
     </message>
     <message>
-        <source>along Dmax</source>
-        <translation>entlang Dmax</translation>
+        <source>along Dₘᵢₙ</source>
+        <translation>entlang Dₘᵢₙ</translation>
     </message>
     <message>
-        <source>along Dmin</source>
-        <translation>entlang Dmin</translation>
+        <source>along Dₘₐₓ</source>
+        <translation>entlang Dₘₐₓ</translation>
     </message>
     <message>
         <source>along x</source>

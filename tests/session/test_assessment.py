@@ -54,5 +54,5 @@ def test_that_the_particle_itself_and_fewer_facets_are_named(coarsened: Coarseni
     found = replace(coarsened, errors=MET, bounds=NO_BOUNDS)
     comparison = ParticleComparison(MET | {"max_diameter": 0.17}, 0.21)
     sentence = assess_polyhedron(found, ALL, comparison, (12, 0.632)).sentence
-    assert "Dmax is 17 % off, Jaccard distance 21 %" in sentence
+    assert "D_max is 17 % off, Jaccard distance 21 %" in sentence
     assert "12 facets had a loss of 0.632" in sentence

@@ -25,9 +25,9 @@ from regolith_studio.ui.widgets.plots.base import Plot, plain_text
 SAME_EVERYWHERE = re.compile(
     "|".join(
         (
-            r"Regolith Studio|Jaccard|English|Deutsch|KiB|CSF|lmax|Dmin|Dmax|Dint|Fmax|Fmin|RMSRE|Zingg",
+            r"Regolith Studio|Jaccard|English|Deutsch|KiB|CSF|lmax|Dmin|Dmax|[lDF](ₘᵢₙ|ₘₐₓ|ᵢₙₜ)|RMSRE|Zingg",
             r"PySide6-Essentials|pyqtgraph|pyvista|numba|numpy|vtk",
-            r"sample:ct/[a-z-]+|(agglutinate|angular|bead|flat|elongated|subangular)-\d|req",
+            r"sample:ct/[a-z-]+|(agglutinate|angular|bead|flat|elongated|subangular)-\d|r_eq",
             r"Ctrl|Shift|Alt|PgUp|PgDown|Return|Space|auto",
             r"MuJoCo|LAMMPS|YADE|Aspherix|ANSYS Rocky|Chrono|DEM-Engine|glTF|Blender",
             r"GSD|HOOMD-blue|Rockable|exaDEM",

@@ -21,8 +21,8 @@ pytestmark = pytest.mark.usefixtures("app")
     [
         ("volume", "V, Volume: volume that the surface encloses"),
         ("sphericity", "S, Sphericity: π^(1/3) (6V)^(2/3) / A (Wadell, true sphericity) (Eq. 1)"),
-        ("min_diameter", "Dmin, Minimum diameter: shortest edge of the bounding box"),
-        ("aspect_ratio", "AR, Aspect ratio: Dmax / Dmin (Eq. 2)"),
+        ("min_diameter", "Dₘᵢₙ, Minimum diameter: shortest edge of the bounding box"),
+        ("aspect_ratio", "AR, Aspect ratio: Dₘₐₓ / Dₘᵢₙ (Eq. 2)"),
     ],
 )
 def test_that_a_definition_has_symbol_name_formula_and_equation(key, words):

@@ -15,6 +15,7 @@ from regolith_studio.ui.widgets.labels import (
     WrappedLabel,
     heading,
     hint_label,
+    plain_symbol,
     with_citations,
     with_subscripts,
 )
@@ -47,6 +48,11 @@ def test_that_a_sentence_gets_real_subscripts_and_is_left_alone_without_symbols(
     assert with_subscripts("a higher l_max comes closer") == "a higher l<sub>max</sub> comes closer"
     assert with_subscripts("D_min < 2 & l_max") == "D<sub>min</sub> &lt; 2 &amp; l<sub>max</sub>"
     assert with_subscripts("flat S<0.8, file sand_max_3.stl") == "flat S<0.8, file sand_max_3.stl"
+
+
+def test_that_plain_symbols_have_the_subscripts_that_unicode_has():
+    assert plain_symbol("D_max / D_min") == "Dₘₐₓ / Dₘᵢₙ"
+    assert plain_symbol("I_3, r_eq, Ψ_K") == "I₃, r_eq, Ψ_K"
 
 
 SIZES = [(1000, 900, False), (500, 900, True), (500, 400, False)]

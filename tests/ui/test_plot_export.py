@@ -42,10 +42,10 @@ def test_that_the_numbers_are_those_of_the_curves(curves, tmp_path):
     curves.save_numbers(tmp_path / "plot.csv")
     with (tmp_path / "plot.csv").open(newline="", encoding="utf-8") as lines:
         head, *rows = csv.reader(lines)
-    assert head == ["curve", "Degree lmax", "RMSRE [%]"]
+    assert head == ["curve", "Degree lₘₐₓ", "RMSRE [%]"]
     assert [(name, float(x), float(y)) for name, x, y in rows] == [
-        ("Dmin", 1.0, 0.5),
-        ("Dmin", 2.0, 0.25),
+        ("Dₘᵢₙ", 1.0, 0.5),
+        ("Dₘᵢₙ", 2.0, 0.25),
         ("V", 1.0, 3.0),
     ]
 
@@ -86,7 +86,7 @@ def test_that_a_point_of_a_curve_tells_its_values_when_pointed_at(curves):
     view = curves.canvas.getViewBox()
     QApplication.processEvents()
     there = view.mapViewToScene(QPointF(2.0, 0.25))
-    assert curves.value_at(there) == "Dmin\nDegree lmax: 2\nRMSRE [%]: 0.25"
+    assert curves.value_at(there) == "Dₘᵢₙ\nDegree lₘₐₓ: 2\nRMSRE [%]: 0.25"
     curves.canvas.scene().sigMouseMoved.emit(there)
     assert curves.canvas.toolTip() == curves.value_at(there)
     assert curves.value_at(there + QPointF(0.0, -60.0)) == ""

@@ -22,6 +22,8 @@ CITATION = "regolith:citation"
 """Address of the citation, see :class:`regolith_studio.ui.dialogs.help.CitationLinks`."""
 _SYMBOL = re.compile(r"\b([lDA])_(min|max|l)\b")
 _SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
+_LETTERS = "aehiklmnoprstx0123456789"
+_SMALL = str.maketrans(_LETTERS, "ₐₑₕᵢₖₗₘₙₒₚᵣₛₜₓ₀₁₂₃₄₅₆₇₈₉")
 
 
 def rich_symbol(text: str) -> Markup:
@@ -30,8 +32,16 @@ def rich_symbol(text: str) -> Markup:
 
 
 def plain_symbol(text: str) -> str:
-    """A symbol such as ``D_min`` as plain text: ``Dmin``."""
-    return _SUBSCRIPT.sub(r"\1\2", text)
+    """A symbol such as ``D_min`` as plain text: with the subscripts of Unicode, or as it is without them.
+
+    There is none for q, so that ``r_eq`` stays as it is.
+    """
+    return _SUBSCRIPT.sub(lambda match: match[1] + subscript(match[2]), text)
+
+
+def subscript(letters: str) -> str:
+    """Letters as a subscript in plain text."""
+    return letters.translate(_SMALL) if set(letters) <= set(_LETTERS) else f"_{letters}"
 
 
 def with_subscripts(words: str) -> str:

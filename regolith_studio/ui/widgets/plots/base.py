@@ -2,6 +2,7 @@
 
 import html
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -42,7 +43,9 @@ from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.ui.layout import hbox, named, vbox
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, localized, tr
-from regolith_studio.ui.widgets.labels import unbroken
+from regolith_studio.ui.widgets.labels import subscript, unbroken
+
+_SUBSCRIPT = re.compile(r"<sub>(\w+)</sub>")
 
 PIXELS = 3
 """Pixels of a PNG for each on the screen."""
@@ -65,8 +68,10 @@ def save_numbers(
 
 
 def plain_text(rich: str) -> str:
-    """Rich text without tags."""
-    return QTextDocumentFragment.fromHtml(rich).toPlainText()
+    """Rich text without tags; with the subscripts that Unicode has."""
+    return QTextDocumentFragment.fromHtml(
+        _SUBSCRIPT.sub(lambda match: subscript(match[1]), rich)
+    ).toPlainText()
 
 
 def png_of_image(image: QImage) -> bytes:
