@@ -8892,6 +8892,10 @@
         <translation>{engine}, Haftreibung {friction:g}, Startwert {seed}</translation>
     </message>
     <message>
+        <source>{file} is not the file that was shown when the project was saved.</source>
+        <translation>{file} ist nicht die Datei, die gezeigt wurde, als das Projekt gespeichert wurde.</translation>
+    </message>
+    <message>
         <source>{folder}: left out 1 file that no reader of meshes takes: {names}.</source>
         <translation>{folder}: 1 Datei ausgelassen, die kein Leser für Netze annimmt: {names}.</translation>
     </message>

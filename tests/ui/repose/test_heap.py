@@ -132,6 +132,31 @@ def test_that_one_dialog_asks_only_what_a_table_does_not_state(
     extra = {"positions_diameter"} if "positions_columns" in fields else set()
     assert asked == ([set(fields) | extra] if fields else [])
     assert path.name in page.angle.sentence.text()
+    state = json.loads(json.dumps(page.state()))
+    page._show_nothing("")
+    page.restore(state)
+    wait(lambda: page._measured is not None)
+    assert page._pile.diameters == pytest.approx(2e-3), "what was answered is kept with the project"
+    assert path.name in page.angle.sentence.text()
+
+
+def test_that_a_project_says_when_its_positions_have_changed_or_moved(page, tmp_path, wait, monkeypatch):
+    path, notes = tmp_path / "pile.npz", []
+    path.write_bytes(particle_state_bytes(pile_of(35.0)))
+    page.open_path(path)
+    wait(lambda: page._measured is not None)
+    state = page.state()
+    path.write_bytes(particle_state_bytes(pile_of(30.0)))
+    monkeypatch.setattr(page._context.toast, "problem", notes.append)
+    page.restore(state)
+    wait(lambda: page._measured is not None)
+    assert notes == [f"{path} is not the file that was shown when the project was saved."]
+    path.unlink()
+    page.restore(state)
+    assert page.state()["imported"] is None
+    assert str(path) in page.angle.sentence.text()
+    page.restore(state | {"imported": {"file": 3}})
+    assert "file" in page.angle.sentence.text()
 
 
 def test_that_a_pending_preview_does_not_take_the_place_of_an_opened_heap(page, tmp_path, wait):

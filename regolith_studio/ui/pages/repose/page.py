@@ -2,10 +2,12 @@
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from platformdirs import user_data_path
+from pydantic import TypeAdapter, ValidationError
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFileDialog
 
@@ -26,13 +28,14 @@ from regolith_studio.dem.run_io import (
     snapshot_files,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import RegolithError, format_validation_error
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, preview_repose, remeasure, repose_steps
 from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
+from regolith_studio.session.project import fingerprint
 from regolith_studio.studies.repose import ReposeStudyRun
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs, vbox
@@ -52,7 +55,13 @@ from regolith_studio.ui.pages.repose.heap import (
     run_origin,
     scale_of_run,
 )
-from regolith_studio.ui.pages.repose.player import RunPlayer, choose_positions, export_measurement, read_pile
+from regolith_studio.ui.pages.repose.player import (
+    ImportedHeap,
+    RunPlayer,
+    choose_positions,
+    export_measurement,
+    read_pile,
+)
 from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
 from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
@@ -77,6 +86,7 @@ class ReposePage(PageWidget):
         self._drum: RunSummary | None = None
         self._measured: ReposeMeasurement | None = None
         self._shown_run: Path | None = None
+        self._imported: ImportedHeap | None = None
         self._origin = ("", "")
         self._notes: tuple[str, ...] = ()
         self._prepared: tuple[PreparedCase, ReposeRequest] | None = None
@@ -150,6 +160,7 @@ class ReposePage(PageWidget):
         followed = self._followed and str(self._followed[0])
         return self.settings() | {
             "shown": run,
+            "imported": self._imported and asdict(self._imported),
             "followed": followed,
             "calibrated": self.calibration.has_runs,
         }
@@ -164,6 +175,8 @@ class ReposePage(PageWidget):
             self.calibrations.show_kept()
         if isinstance(shown := state.get("shown"), Mapping):
             self._restore_run(Path(str(shown.get("folder"))), shown.get("sha256"))
+        elif isinstance(imported := state.get("imported"), Mapping):
+            self._restore_imported(imported)
 
     def _restore_run(self, folder: Path, sha256: object) -> None:
         """Show the run of a project, which the project names but does not hold."""
@@ -180,6 +193,22 @@ class ReposePage(PageWidget):
         self._later.stop()  # the preview of the set-up would take the place of the run
         self._show_run(run)
         self.runs.select(folder)
+
+    def _restore_imported(self, state: Mapping[str, Any]) -> None:
+        """Show the positions of a project, which the project names but does not hold."""
+        try:
+            heap = TypeAdapter(ImportedHeap).validate_python(state)
+            pile, _ = heap.pile()
+        except ValidationError as error:
+            self._show_nothing(format_validation_error(error.errors(include_url=False)), ResultState.FAILED)
+            return
+        except RegolithError as error:
+            self._show_nothing(str(error), ResultState.FAILED)
+            return
+        if fingerprint(Path(heap.file)) != heap.fingerprint:
+            note = tr("{file} is not the file that was shown when the project was saved.", file=heap.file)
+            self._context.toast.problem(note)
+        self._show_imported(heap, pile)
 
     def on_hide(self) -> None:
         self.player.pause()
@@ -266,17 +295,22 @@ class ReposePage(PageWidget):
             return
         if read is None:
             return
-        pile, notes = read
+        heap, pile, notes = read
         for note in notes:
             self._context.toast.note(note)
+        self._show_imported(heap, pile)
+
+    def _show_imported(self, heap: ImportedHeap, pile: ParticleState) -> None:
+        name = Path(heap.file).name
         self._later.stop()  # the preview of the set-up would take the place of the heap
         self._context.stop(PREVIEW)
         self._shown_run = None
+        self._imported = heap
         self.runs.select(None)
-        self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=path.name), "")
+        self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=name), "")
         self._notes = ()
         self.player.set_scene(((self.player_ball(),),), True, LiftingCylinderTest())
-        self.player.show_moment(pile, path.name, tr("{count:,} particles", count=len(pile)))
+        self.player.show_moment(pile, name, tr("{count:,} particles", count=len(pile)))
         self.limits.show_scale(CaseScale(len(pile)))
         self._measure(pile)
 
@@ -464,6 +498,7 @@ class ReposePage(PageWidget):
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
+        self._imported = None
         self._origin, self._notes = run_origin(run.document), run_notes(run)
         if pile is not None and case.get("drum"):
             self._drum = run
@@ -520,7 +555,7 @@ class ReposePage(PageWidget):
     ) -> None:
         """Show that there is no measurement of what is seen, and why."""
         self._context.stop(MEASURE)
-        self._pile = self._measured = self._shown_run = self._drum = None
+        self._pile = self._measured = self._shown_run = self._drum = self._imported = None
         self.angle.caption(0, tr("Angle of repose"))
         self.angle.caption(1, interval_caption(None))
         self._show_card(ResultRecord((), made_from, state=state, note=sentence))

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,7 @@ from regolith_studio.readers.positions import ParticlePositions, asks_for_column
 from regolith_studio.readers.settings import unit_factor
 from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import Direction, filled, framing_pose
+from regolith_studio.session.project import fingerprint
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
 from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, hbox, named, vbox
@@ -115,32 +117,57 @@ def choose_positions(parent: QWidget) -> Path | None:
     return Path(name) if name else None
 
 
-def read_pile(parent: QWidget, path: Path) -> tuple[ParticleState, tuple[str, ...]] | None:
-    """The particles of a file and notes on it; None where a question was not answered."""
+@dataclass(frozen=True)
+class ImportedHeap:
+    """A file of positions, and how it is read.
+
+    - ``file``: its absolute path.
+    - ``unit``, ``columns``, ``diameter``: what the user has said of it; the diameter, in metres, is that of
+      all particles where the file states none.
+    - ``fingerprint``: of the file that was shown.
+    """
+
+    file: str
+    unit: str = "m"
+    columns: str = ""
+    diameter: float = 1e-3
+    fingerprint: str = ""
+
+    def pile(self, read: ParticlePositions | None = None) -> tuple[ParticleState, tuple[str, ...]]:
+        """The particles and notes on them; ``read`` if the file has been read in this way."""
+        if self.file.endswith(".npz"):
+            return read_final_state(Path(self.file)), ()
+        read = read or read_positions(self.file, self.unit, columns=self.columns)
+        n = len(read)
+        diameters = read.diameters if read.diameters is not None else np.full(n, self.diameter)
+        still = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+        numbers = np.zeros(n, dtype=np.int64)
+        state = ParticleState(read.points, diameters, still, numbers, 0.0, float("inf"), N_("imported"))
+        return state, read.notes
+
+
+def read_pile(parent: QWidget, path: Path) -> tuple[ImportedHeap, ParticleState, tuple[str, ...]] | None:
+    """A file, its particles and notes on them; None where a question was not answered."""
+    heap = ImportedHeap(str(path.absolute()), fingerprint=fingerprint(path))
     if path.suffix == ".npz":
-        return read_final_state(path), ()
+        return heap, *heap.pile()
     read: ParticlePositions | None = None
     try:
         read = read_positions(path)
     except FileError as error:
         if not asks_for_columns(error):
             raise
-    diameter = 1e-3
     if read is None or not read.states_unit or read.diameters is None:
         dialog = PositionsDialog(path, read, parent)
         accepted = dialog.exec() == QDialog.DialogCode.Accepted
-        unit, columns = dialog.unit.currentData(), dialog.columns.text() if read is None else ""
-        diameter *= dialog.diameter.value()
+        columns = dialog.columns.text() if read is None else ""
+        diameter = 1e-3 * dialog.diameter.value()
+        heap = replace(heap, unit=dialog.unit.currentData(), columns=columns, diameter=diameter)
         dialog.deleteLater()
         if not accepted:
             return None
-        read = read_positions(path, unit, columns=columns)
-    n = len(read)
-    diameters = read.diameters if read.diameters is not None else np.full(n, diameter)
-    still = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
-    numbers = np.zeros(n, dtype=np.int64)
-    state = ParticleState(read.points, diameters, still, numbers, 0.0, float("inf"), N_("imported"))
-    return state, read.notes
+        read = None
+    return heap, *heap.pile(read)
 
 
 def export_measurement(
