@@ -335,8 +335,8 @@ def match(
         result_of(found.written(output, mass))
     print_errors(problem.with_path for problem in found.problems)
     if json:
-        print_json({"target": target, "materials": table.records})
+        print_json({"target": target, "materials": table.records, "notes": found.match.notes})
     else:
         print_table(table)
-        typer.echo(f"Nearest by itself: {found.match.nearest.name}. {table.notes[0]}")
+        typer.echo(" ".join((f"Nearest by itself: {found.match.nearest.name}.", *table.notes)))
     raise typer.Exit(1 if found.problems else 0)

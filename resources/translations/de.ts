@@ -3676,6 +3676,10 @@
         <translation>Kein Material ist gewählt.</translation>
     </message>
     <message>
+        <source>No mixture of these matches the sample; grams are those of the nearest one.</source>
+        <translation>Keine Mischung aus ihnen passt zur Probe; die Gramm gelten für die nächste.</translation>
+    </message>
+    <message>
         <source>No open particle comes from a file: open some, or choose a recipe file.</source>
         <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
     </message>

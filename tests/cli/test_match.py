@@ -39,6 +39,13 @@ def test_that_the_masses_of_the_nearest_mixture_are_said_in_grams(command, table
     assert "Nearest by itself: fine.csv" in command("match", *tables).out
 
 
+def test_that_a_target_out_of_reach_is_said(command, tables):
+    assert "No mixture" not in command("match", *tables).out
+    far = command("match", tables[2], tables[1])
+    assert "No mixture of the candidates is as near to coarse.csv" in far.out
+    assert "No mixture" in command("match", tables[2], tables[1], "--json").json["notes"][0]
+
+
 def test_that_what_is_no_material_is_one_sentence(command, tables, tmp_path):
     missing = command("match", tables[0], tmp_path / "nothing.csv")
     assert (missing.code, missing.err.count("\n")) == (1, 1)

@@ -172,6 +172,12 @@ def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path,
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path / "out"))
     panel.save()
     wait(lambda: (tmp_path / "out" / "match.csv").is_file())
+    assert panel.card.record.note.startswith("Distances in floors")
+    sample = fine[:30]
+    panel.candidates.takeItem(0)
+    panel.start()
+    wait(lambda: panel.found.match.mixture.n_particles == 60, SECONDS)
+    wait(lambda: panel.card.record.note.startswith("No mixture of these matches the sample"))
 
 
 @pytest.mark.slow

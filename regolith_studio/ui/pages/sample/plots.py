@@ -458,6 +458,8 @@ class MatchPanel(QWidget):
             self._context.toast.problem(problem.with_path)
         values = tuple(_in_floors(part) for part in (match.nearest, match.mixture))
         note = tr("Distances in floors; 1 is the scatter of the sample itself.")
+        if not match.is_reached:
+            note = tr("No mixture of these matches the sample; grams are those of the nearest one.")
         return ResultRecord(values, match.nearest.name, note=note)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
