@@ -1,17 +1,11 @@
 """A sample of the attack on every command that writes."""
 
-import os
 import random
-import signal
-import subprocess
 import sys
-import time
-from functools import partial
 from pathlib import Path
 
 import pytest
 
-from benchmarks import attack as attack_script
 from benchmarks.attack import (
     COMMANDS,
     Arena,
@@ -19,7 +13,6 @@ from benchmarks.attack import (
     Prepared,
     Row,
     Rows,
-    Running,
     attack,
     evaluate,
     lines,
@@ -44,45 +37,6 @@ def test_that_an_attack_leaves_an_earlier_result_or_a_new_one(tmp_path: Path) ->
     assert rows
     bad = {key for key, row in rows.items() if row.lost or row.mixed or row.left or row.unclear}
     assert not bad, [line for name in commands for line in lines(rows, name)]
-
-
-def leave_a_process() -> None:
-    """It holds the command's stderr, so that nobody may wait for the end of that."""
-    sys.stderr.write("Stopped.\n")
-    subprocess.Popen(["sleep", "60"], env={**os.environ})  # what changed after the start, too
-    raise SystemExit(130)
-
-
-def ignore_signals(ready: Path) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    ready.touch()
-    time.sleep(60)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
-def test_that_a_process_that_outlives_its_command_is_counted_and_ended(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(attack_script, "GRACE", 0.2)
-    (tmp_path / "tmp").mkdir()
-    begun = time.monotonic()
-    assert Running(leave_a_process, tmp_path / "tmp").end() == Ended(130, "Stopped.\n", 1)
-    assert time.monotonic() - begun < 30
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
-def test_that_a_command_that_does_not_end_after_a_signal_is_counted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(attack_script, "GRACE", 0.2)
-    (tmp_path / "tmp").mkdir()
-    running = Running(partial(ignore_signals, tmp_path / "ready"), tmp_path / "tmp")
-    while not (tmp_path / "ready").exists():
-        time.sleep(0.01)
-    running.send(signal.SIGINT)
-    ended = running.end(signalled=True)
-    assert ended.code == -signal.SIGKILL
-    assert ended.processes == 1
 
 
 @pytest.mark.parametrize(

@@ -5,15 +5,13 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
 import psutil
 import pytest
 
-from regolith_studio.cli import entry
-from regolith_studio.cli.entry import INTERRUPTED, STOP_SECONDS, STOPPED, StopSignals
+from regolith_studio.cli.entry import STOP_SECONDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 60.0
@@ -291,27 +289,3 @@ def test_that_an_interruption_is_no_mistake_of_a_library_and_leaves_no_lock(tmp_
     )
     assert (done.returncode, done.stderr) == (143, "Stopped.\n")
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("first", ["command", "thread", "both"])
-def test_that_a_command_says_once_that_it_was_stopped(
-    first: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """The time of the thread that ends a command may be over just when the command ends by itself."""
-    signals = StopSignals()
-    monkeypatch.setattr(signals, "_handled", {signal.SIGINT})
-    monkeypatch.setattr(entry, "STOP_SECONDS", 0.01)
-    monkeypatch.setattr(entry, "_saying", threading.Lock())
-    monkeypatch.setattr(entry, "_said", threading.Event())
-    if first != "thread":
-        monkeypatch.setattr(entry, "remove_unfinished", lambda: entry._report(STOPPED, INTERRUPTED))
-    ended: list[int] = []
-    monkeypatch.setattr(os, "_exit", ended.append)
-    with signals._reading, signals._writing:
-        signals._writing.send(bytes([signal.SIGINT]))
-        signals._end_in_time()
-    assert ended == [130]
-    if first == "both":  # a signal that was repeated ends the command once more
-        entry._saying.release()
-        entry.say_last(STOPPED)
-    assert capfd.readouterr().err == "Stopped.\n"

@@ -1,6 +1,6 @@
-"""Some 300 volumes that are broken in ways we made: each is refused with the sentence of its kind.
+"""Volumes that are broken in ways we made: each is refused with the sentence of its kind.
 
-A corpus is a list of name, bytes and pattern. The sentences are written down by hand here, from what is
+The sentences are written down by hand here, from what is
 wrong with the file, not from what a parser says.
 """
 
@@ -9,7 +9,6 @@ import io
 import re
 import struct
 import zlib
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -21,34 +20,22 @@ from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 FOREIGN = Path(__file__).with_name("foreign_volumes")
 SLICES = np.arange(120, dtype="<i2").reshape(4, 5, 6)
-CUT = r"is cut short|is broken|is a broken|is no |is empty|is damaged"
-Bad = tuple[str, bytes, str]
-
-CUTS = (0, 1, 3, 5, 9, 15, 22, 30, 40, 60, 80, 99)
-"""Per cent of a file that are left of it."""
+Bad = dict[str, tuple[bytes, str]]
+"""By name, one file for each sentence: its bytes, and what the sentence says."""
 
 
-def cut(name: str, data: bytes, kind: str = CUT) -> Iterator[Bad]:
-    """A file that ends too early, at a dozen places."""
+def spoilt(name: str, data: bytes, short: str, kind: str) -> Bad:
+    """A file that ends too early, in its head and in its voxels, and files of quite another kind."""
     stem, _, suffix = name.partition(".")
-    for share in CUTS:
-        yield f"{stem}-cut-at-{share}.{suffix}", data[: len(data) * share // 100], kind
-
-
-def strangers(suffix: str, kind: str) -> Iterator[Bad]:
-    """Files of quite another kind under a wrong name."""
-    others = {
-        "text": b"dear diary\n" * 40,
-        "html": b"<!DOCTYPE html><html><body>404 not found</body></html>",
-        "zip": b"PK\3\4" + bytes(400),
-        "pdf": b"%PDF-1.4\n" + bytes(400),
-        "zeros": bytes(600),
-        "ones": b"\xff" * 600,
-        "newlines": b"\n" * 600,
-        "noise": np.random.default_rng(3).integers(0, 256, 600, dtype=np.uint8).tobytes(),
+    cuts = {
+        f"{stem}-cut-at-{share}.{suffix}": data[: len(data) * share // 100] for share in (0, 3, 15, 60, 99)
     }
-    for name, data in others.items():
-        yield f"{name}{suffix}", data, kind
+    noise = np.random.default_rng(3).integers(0, 256, 600, dtype=np.uint8).tobytes()
+    page = b"<!DOCTYPE html><html><body>404 not found</body></html>"
+    others = {"html": page, "zip": b"PK\3\4" + bytes(400), "noise": noise}
+    return {key: (cut, short) for key, cut in cuts.items()} | {
+        f"{key}.{suffix}": (other, kind) for key, other in others.items()
+    }
 
 
 def npy(header: str | bytes, data: bytes = SLICES.tobytes(), version: bytes = b"\1\0") -> bytes:
@@ -56,93 +43,70 @@ def npy(header: str | bytes, data: bytes = SLICES.tobytes(), version: bytes = b"
     return b"\x93NUMPY" + version + struct.pack("<H", len(text)) + text + data
 
 
-def npys() -> Iterator[Bad]:
-    good = "{'descr': '<i2', 'fortran_order': False, 'shape': (4, 5, 6), }\n"
-    yield from cut("a.npy", npy(good), CUT)
-    yield from strangers(".npy", "is a broken NPY file")
-    for number, shape in enumerate(("(4, 5)", "(120,)", "()", "(2, 2, 5, 6)", "(2,2,2,3,5)")):
-        yield f"dimensions-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), "is not a volume: its shape"
-    for number, shape in enumerate(("(0, 5, 6)", "(4, 0, 6)", "(4, -5, 6)")):
-        yield f"nothing-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), "holds no voxels"
-    for number, shape in enumerate(("(4, 5, 6000)", "(400, 500, 600)")):
-        yield f"promise-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), "is cut short"
-    for number, shape in enumerate(
-        ("(4, 5, 6000000)", "(10**9,5,6)", "(4.0, 5, 6)", "'456'", "(4,,5)", "[4,5,6]")
-    ):
-        pattern = "is damaged|is a broken NPY file"
-        yield f"shape-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), pattern
-    for kind in ("|O", "O"):
-        yield f"object-{len(kind)}.npy", npy(good.replace("<i2", kind)), "holds Python objects"
-    for kind, sentence in (
-        ("<c8", "complex"),
-        ("|S4", "values"),
-        ("<U2", "values"),
-        ("<M8[s]", "values"),
-        ("|V4", "values"),
-    ):
-        yield f"type-{kind[1]}.npy", npy(good.replace("<i2", kind)), f"holds .*{sentence}"
-    structured = good.replace("'<i2'", "[('a', '<i2'), ('b', '<f4')]")
-    yield "structured.npy", npy(structured), "holds structured values"
-    for number, text in enumerate(
-        ("{}\n", "[]\n", "{'descr': '<i2'}\n", "__import__('os').getpid()\n", "{" * 5000)
-    ):
-        yield f"header-{number}.npy", npy(text), "is a broken NPY file"
-    yield "long.npy", npy(good[:-1] + " " * 20000 + "\n"), "is a broken NPY file"
-    yield "version.npy", npy(good, version=b"\x09\0"), "version 9.0"
-    yield "slice.npy", npy(good.replace("(4, 5, 6)", "(1, 1000000, 1000000)")), "is cut short|has slices of"
+NPY = "{'descr': '<i2', 'fortran_order': False, 'shape': (4, 5, 6), }\n"
 
 
-def with_field(text: str, name: str, value: str | None) -> str:
-    """A header with one field changed, or without it."""
-    lines = [line for line in text.splitlines() if not line.startswith(name)]
-    if value is not None:
-        lines.insert(1, f"{name}{value}")
-    return "\n".join(lines)
+def of_shape(shape: str) -> bytes:
+    return npy(NPY.replace("(4, 5, 6)", shape))
 
 
+def of_type(kind: str) -> bytes:
+    return npy(NPY.replace("'<i2'", kind))
+
+
+NPYS: Bad = spoilt(
+    "a.npy", npy(NPY), "is cut short|is a broken NPY file|is empty", "is a broken NPY file"
+) | {
+    "dimensions.npy": (of_shape("(4, 5)"), "is not a volume: its shape"),
+    "nothing.npy": (of_shape("(4, -5, 6)"), "holds no voxels"),
+    "promise.npy": (of_shape("(4, 5, 6000)"), "is cut short"),
+    "enormous.npy": (of_shape("(4, 5, 6000000000)"), "is damaged|is a broken NPY file"),
+    "shape.npy": (of_shape("(4,,5)"), "is a broken NPY file"),
+    "object.npy": (of_type("'|O'"), "holds Python objects"),
+    "complex.npy": (of_type("'<c8'"), "holds .*complex"),
+    "text.npy": (of_type("'<U2'"), "holds .*values"),
+    "structured.npy": (of_type("[('a', '<i2'), ('b', '<f4')]"), "holds structured values"),
+    "code.npy": (npy("__import__('os').getpid()\n"), "is a broken NPY file"),
+    "deep.npy": (npy("{" * 5000), "is a broken NPY file"),
+    "long.npy": (npy(NPY[:-1] + " " * 20000 + "\n"), "is a broken NPY file"),
+    "version.npy": (npy(NPY, version=b"\x09\0"), "version 9.0"),
+}
 NRRD = "NRRD0004\ntype: short\ndimension: 3\nsizes: 6 5 4\nendian: little\nencoding: raw"
 
 
 def nrrd(name: str, value: str | None, data: bytes = SLICES.tobytes()) -> bytes:
-    return with_field(NRRD, f"{name}:", None if value is None else f" {value}").encode() + b"\n\n" + data
+    lines = [line for line in NRRD.splitlines() if not line.startswith(f"{name}:")]
+    if value is not None:
+        lines.insert(1, f"{name}: {value}")
+    return "\n".join(lines).encode() + b"\n\n" + data
 
 
-def nrrds() -> Iterator[Bad]:
-    yield from cut("a.nrrd", nrrd("x", None), "is cut short|is a broken NRRD|is not an NRRD|is empty")
-    yield from strangers(".nrrd", "is not an NRRD")
-    for field in ("type", "dimension", "sizes", "endian", "encoding"):
-        yield f"without-{field}.nrrd", nrrd(field, None), "is a broken NRRD|is an NRRD in no encoding"
-    for kind in ("block", "float16", "string", "complex", "short short"):
-        yield f"type-{kind}.nrrd", nrrd("type", kind), "holds “.*” values"
-    for number, sizes in enumerate(
-        ("6 5", "6 5 4 1 1", "6 5 x", "6 5 -4", "6.0 5 4", "6 5 99999999999999999999")
-    ):
-        yield f"sizes-{number}.nrrd", nrrd("sizes", sizes), "is a broken NRRD"
-    yield "empty.nrrd", nrrd("sizes", "6 0 4"), "holds no voxels"
-    for number, sizes in enumerate(("6 5 5", "6 50 4", "600 500 400")):
-        yield f"promise-{number}.nrrd", nrrd("sizes", sizes), "is cut short"
-    yield "enormous.nrrd", nrrd("sizes", "6 5 4000000000"), "is damaged: no volume can have"
-    for encoding in ("hex", "ascii", "bzip2", "zstd"):
-        yield f"encoding-{encoding}.nrrd", nrrd("encoding", encoding), "is an NRRD in "
-    for number, data in enumerate((b"", b"\x1f\x8b", b"x" * 50, gzip.compress(SLICES.tobytes())[:40])):
-        yield f"gzip-{number}.nrrd", nrrd("encoding", "gzip", data), "is damaged|is cut short"
-    packed = gzip.compress(SLICES.tobytes() + bytes(1_000_000))
-    yield "gzip-long.nrrd", nrrd("encoding", "gzip", packed[:-8] + bytes(8)), "is damaged"
-    yield "gzip-short.nrrd", nrrd("encoding", "gz", gzip.compress(bytes(9))), "is cut short"
-    for number, target in enumerate(("/etc/passwd", "../a.raw", "sub/a.raw", "..", "C:\\a.raw")):
-        yield f"elsewhere-{number}.nhdr", nrrd("data file", target), "only a file in the same folder is read"
-    yield "absent.nhdr", nrrd("data file", "absent.raw"), "needs the file “absent.raw”"
-    yield "itself.nhdr", nrrd("data file", "itself.nhdr"), "points to itself"
-    for target in ("LIST", "slice%03d.raw 1 4 1"):
-        yield f"several-{target[:4]}.nhdr", nrrd("data file", target), "over several files"
-    yield "lines.nrrd", nrrd("line skip", "3"), "skips lines or bytes"
-    yield "bytes.nrrd", nrrd("byte skip", "-5"), "skips lines or bytes"
-    yield "twice.nrrd", b"NRRD0004\ntype: short\ntype: short\n\n", "has the field “type” twice"
-    yield "word.nrrd", b"NRRD0004\nhello\n\n", "line 2 of its header is not a field"
-    yield "endless.nrrd", b"NRRD0004\n" + b"# comment\n" * 9000, "its header does not end"
-    yield "version.nrrd", nrrd("x", None).replace(b"0004", b"0009"), "is not an NRRD of versions 1 to 5"
-
-
+LONG_STREAM = gzip.compress(SLICES.tobytes() + bytes(1_000_000))[:-8] + bytes(8)
+NRRDS: Bad = spoilt(
+    "a.nrrd", nrrd("x", None), "is cut short|is a broken NRRD|is not an NRRD|is empty", "is not an NRRD"
+) | {
+    "without-type.nrrd": (nrrd("type", None), "is a broken NRRD"),
+    "without-encoding.nrrd": (nrrd("encoding", None), "is an NRRD in no encoding|is a broken NRRD"),
+    "type.nrrd": (nrrd("type", "block"), "holds “.*” values"),
+    "sizes.nrrd": (nrrd("sizes", "6 5 -4"), "is a broken NRRD"),
+    "empty.nrrd": (nrrd("sizes", "6 0 4"), "holds no voxels"),
+    "promise.nrrd": (nrrd("sizes", "6 50 4"), "is cut short"),
+    "enormous.nrrd": (nrrd("sizes", "6 5 4000000000"), "is damaged: no volume can have"),
+    "encoding.nrrd": (nrrd("encoding", "bzip2"), "is an NRRD in "),
+    "gzip.nrrd": (nrrd("encoding", "gzip", b"x" * 50), "is damaged|is cut short"),
+    "gzip-long.nrrd": (nrrd("encoding", "gzip", LONG_STREAM), "is damaged"),
+    "gzip-short.nrrd": (nrrd("encoding", "gz", gzip.compress(bytes(9))), "is cut short"),
+    "above.nhdr": (nrrd("data file", "../a.raw"), "only a file in the same folder is read"),
+    "elsewhere.nhdr": (nrrd("data file", "/etc/passwd"), "only a file in the same folder is read"),
+    "absent.nhdr": (nrrd("data file", "absent.raw"), "needs the file “absent.raw”"),
+    "itself.nhdr": (nrrd("data file", "itself.nhdr"), "points to itself"),
+    "several.nhdr": (nrrd("data file", "slice%03d.raw 1 4 1"), "over several files"),
+    "bytes.nrrd": (nrrd("byte skip", "-5"), "skips lines or bytes"),
+    "twice.nrrd": (b"NRRD0004\ntype: short\ntype: short\n\n", "has the field “type” twice"),
+    "word.nrrd": (b"NRRD0004\nhello\n\n", "line 2 of its header is not a field"),
+    "endless.nrrd": (b"NRRD0004\n" + b"# comment\n" * 9000, "its header does not end"),
+    "version.nrrd": (nrrd("x", None).replace(b"0004", b"0009"), "is not an NRRD of versions 1 to 5"),
+}
 MHA = "ObjectType = Image\nNDims = 3\nDimSize = 6 5 4\nElementType = MET_SHORT\nElementDataFile = LOCAL"
 
 
@@ -153,43 +117,30 @@ def mha(name: str, value: str | None, data: bytes = SLICES.tobytes()) -> bytes:
     return "\n".join(lines).encode() + b"\n" + data
 
 
-def metaimages() -> Iterator[Bad]:
-    yield from cut("a.mha", mha("x", None), "is cut short|is a broken MetaImage|is empty")
-    yield from strangers(".mha", "is a broken MetaImage")
-    for field in ("NDims", "DimSize", "ElementType", "ElementDataFile"):
-        yield f"without-{field}.mha", mha(field, None), "is a broken MetaImage|holds “” values"
-    for kind in ("MET_STRING", "MET_HALF", "int", "MET_FLOAT_ARRAY"):
-        yield f"type-{kind}.mha", mha("ElementType", kind), "holds “.*” values|holds several channels"
-    yield "channels.mha", mha("ElementNumberOfChannels", "3"), "holds several channels"
-    for number, sizes in enumerate(("6 5", "6 5 x", "6 5 -4", "6.0 5 4", "", "6 5 4 1", "9" * 30)):
-        yield f"sizes-{number}.mha", mha("DimSize", sizes), "is a broken MetaImage"
-    yield "empty.mha", mha("DimSize", "6 0 4"), "holds no voxels"
-    for number, sizes in enumerate(("6 5 5", "6 50 4", "600 500 400")):
-        yield f"promise-{number}.mha", mha("DimSize", sizes), "is cut short"
-    yield "enormous.mha", mha("DimSize", "6 5 4000000000"), "is damaged: no volume can have"
-    for number, dimensions in enumerate(("2", "4", "x", "-3")):
-        yield f"dimensions-{number}.mha", mha("NDims", dimensions), "NDims and its DimSize do not agree"
-    packed = zlib.compress(SLICES.tobytes())
-    for number, data in enumerate((b"", b"x" * 50, packed[:20], zlib.compress(bytes(9)))):
-        yield f"packed-{number}.mha", mha("CompressedData", "True", data), "is damaged|is cut short"
-    for number, target in enumerate(("/etc/passwd", "../a.raw", "sub/a.raw", "..", "n" * 300)):
-        yield (
-            f"elsewhere-{number}.mhd",
-            mha("ElementDataFile", target),
-            "only a file in the same folder is read",
-        )
-    yield "absent.mhd", mha("ElementDataFile", "absent.raw"), "needs the file “absent.raw”"
-    yield "itself.mhd", mha("ElementDataFile", "itself.mhd"), "points to itself"
-    for target in ("LIST", "slice%03d.raw 1 4 1"):
-        yield f"several-{target[:4]}.mhd", mha("ElementDataFile", target), "over several files"
-    yield "text.mha", mha("BinaryData", "False"), "holds its voxels as text"
-    for number, size in enumerate(("x", "-2", "99999999")):
-        yield f"header-{number}.mha", mha("HeaderSize", size), "cannot have the size|is cut short"
-    yield (
-        "twice.mha",
-        mha("x", None).replace(b"NDims = 3", b"NDims = 3\nNDims = 3"),
-        "has the field “ndims” twice",
-    )
+TWICE = mha("x", None).replace(b"NDims = 3", b"NDims = 3\nNDims = 3")
+METAIMAGES: Bad = spoilt(
+    "a.mha", mha("x", None), "is cut short|is a broken MetaImage|is empty", "is a broken MetaImage"
+) | {
+    "without-size.mha": (mha("DimSize", None), "is a broken MetaImage"),
+    "without-file.mha": (mha("ElementDataFile", None), "is a broken MetaImage"),
+    "type.mha": (mha("ElementType", "MET_STRING"), "holds “.*” values"),
+    "channels.mha": (mha("ElementNumberOfChannels", "3"), "holds several channels"),
+    "sizes.mha": (mha("DimSize", "6 5 x"), "is a broken MetaImage"),
+    "empty.mha": (mha("DimSize", "6 0 4"), "holds no voxels"),
+    "promise.mha": (mha("DimSize", "6 50 4"), "is cut short"),
+    "enormous.mha": (mha("DimSize", "6 5 4000000000"), "is damaged: no volume can have"),
+    "dimensions.mha": (mha("NDims", "2"), "NDims and its DimSize do not agree"),
+    "packed.mha": (mha("CompressedData", "True", b"x" * 50), "is damaged|is cut short"),
+    "packed-short.mha": (mha("CompressedData", "True", zlib.compress(bytes(9))), "is damaged|is cut short"),
+    "elsewhere.mhd": (mha("ElementDataFile", "../a.raw"), "only a file in the same folder is read"),
+    "endless.mhd": (mha("ElementDataFile", "n" * 300), "only a file in the same folder is read"),
+    "absent.mhd": (mha("ElementDataFile", "absent.raw"), "needs the file “absent.raw”"),
+    "itself.mhd": (mha("ElementDataFile", "itself.mhd"), "points to itself"),
+    "several.mhd": (mha("ElementDataFile", "LIST"), "over several files"),
+    "text.mha": (mha("BinaryData", "False"), "holds its voxels as text"),
+    "header.mha": (mha("HeaderSize", "-2"), "cannot have the size|is cut short"),
+    "twice.mha": (TWICE, "has the field “ndims” twice"),
+}
 
 
 def patched(name: str, place: int, kind: str, *values: float) -> bytes:
@@ -198,47 +149,30 @@ def patched(name: str, place: int, kind: str, *values: float) -> bytes:
     return bytes(data)
 
 
-def niftis() -> Iterator[Bad]:
-    one, two = (FOREIGN / "nib1.nii").read_bytes(), (FOREIGN / "nib2.nii").read_bytes()
-    yield from cut("one.nii", one, "is not a NIfTI|is cut short|is empty")
-    yield from cut(
-        "one.nii.gz", gzip.compress(one, mtime=0), "is not a NIfTI|is cut short|is damaged|is empty"
-    )
-    yield from strangers(".nii", "is not a NIfTI file")
-    for code, sentence in (
-        (32, "complex"),
-        (128, "colours"),
-        (1536, "128 bits"),
-        (1792, "complex"),
-        (2304, "colours"),
-        (1, "bits"),
-    ):
-        yield f"type-{code}.nii", patched("nib1.nii", 70, "h", code), f"holds .*{sentence}"
-    for code in (0, 3, -1, 999):
-        yield f"type-{code}.nii", patched("nib1.nii", 70, "h", code), "there is no type of number"
-    for dimensions in (0, -3, 8, 32000):
-        yield f"dimensions-{dimensions}.nii", patched("nib1.nii", 40, "h", dimensions), "it cannot have"
-    yield "flat.nii", patched("nib1.nii", 40, "h", 2), "is not a volume: its shape"
-    yield "times.nii", patched("nib1.nii", 40, "5h", 4, 6, 5, 2, 2), "is not a volume: its shape"
-    for axis in (1, 2, 3):
-        yield f"empty-{axis}.nii", patched("nib1.nii", 40 + 2 * axis, "h", 0), "holds no voxels"
-        yield f"negative-{axis}.nii", patched("nib1.nii", 40 + 2 * axis, "h", -7), "holds no voxels"
-        yield f"promise-{axis}.nii", patched("nib1.nii", 40 + 2 * axis, "h", 30000), "is cut short"
-        yield (
-            f"enormous-{axis}.nii",
-            patched("nib2.nii", 16 + 8 * axis, "q", 2**40),
-            "is damaged: no volume can have",
-        )
-    for number, offset in enumerate((-352.0, 12.0, 352.5, 1e30, float("nan"), float("inf"))):
-        yield f"offset-{number}.nii", patched("nib1.nii", 108, "f", offset), "voxels cannot begin at byte"
-    yield "beyond.nii", patched("nib1.nii", 108, "f", 5000.0), "is cut short"
-    yield "pair.nii", one[:344] + b"ni1\0" + one[348:], "keeps its voxels in a second file"
-    yield "analyze.nii", one[:344] + bytes(4) + one[348:], "its signature is missing"
-    yield "pair2.nii", two[:4] + b"ni2" + two[7:], "keeps its voxels in a second file"
-    yield "mangled.nii", two[:8] + b"\n\n\n\n" + two[12:], "signature is missing or damaged"
-
-
-CORPORA = {"npy": npys, "nrrd": nrrds, "metaimage": metaimages, "nifti": niftis}
+ONE, TWO = (FOREIGN / "nib1.nii").read_bytes(), (FOREIGN / "nib2.nii").read_bytes()
+NIFTI_SHORT = "is not a NIfTI|is cut short|is damaged|is empty"
+NIFTIS: Bad = (
+    spoilt("one.nii", ONE, NIFTI_SHORT, "is not a NIfTI file")
+    | spoilt("one.nii.gz", gzip.compress(ONE, mtime=0), NIFTI_SHORT, "is not a NIfTI|is damaged")
+    | {
+        "complex.nii": (patched("nib1.nii", 70, "h", 32), "holds .*complex"),
+        "colours.nii": (patched("nib1.nii", 70, "h", 128), "holds .*colours"),
+        "long.nii": (patched("nib1.nii", 70, "h", 1536), "holds .*128 bits"),
+        "type.nii": (patched("nib1.nii", 70, "h", 999), "there is no type of number"),
+        "dimensions.nii": (patched("nib1.nii", 40, "h", -3), "it cannot have"),
+        "flat.nii": (patched("nib1.nii", 40, "h", 2), "is not a volume: its shape"),
+        "times.nii": (patched("nib1.nii", 40, "5h", 4, 6, 5, 2, 2), "is not a volume: its shape"),
+        "negative.nii": (patched("nib1.nii", 42, "h", -7), "holds no voxels"),
+        "promise.nii": (patched("nib1.nii", 46, "h", 30000), "is cut short"),
+        "enormous.nii": (patched("nib2.nii", 24, "q", 2**40), "is damaged: no volume can have"),
+        "offset.nii": (patched("nib1.nii", 108, "f", float("nan")), "voxels cannot begin at byte"),
+        "beyond.nii": (patched("nib1.nii", 108, "f", 5000.0), "is cut short"),
+        "pair.nii": (ONE[:344] + b"ni1\0" + ONE[348:], "keeps its voxels in a second file"),
+        "analyze.nii": (ONE[:344] + bytes(4) + ONE[348:], "its signature is missing"),
+        "mangled.nii": (TWO[:8] + b"\n\n\n\n" + TWO[12:], "signature is missing or damaged"),
+    }
+)
+CORPORA = {"npy": NPYS, "nrrd": NRRDS, "metaimage": METAIMAGES, "nifti": NIFTIS}
 
 
 def refusal(path: Path, raw: RawLayout | None = None) -> str:
@@ -261,25 +195,18 @@ def refusal(path: Path, raw: RawLayout | None = None) -> str:
 
 @pytest.mark.parametrize("key", CORPORA)
 def test_that_each_broken_volume_is_refused_with_the_sentence_of_its_kind(key, tmp_path) -> None:
-    corpus = list(CORPORA[key]())
-    assert len(corpus) >= 40
-    for name, data, pattern in corpus:
+    for name, (data, pattern) in CORPORA[key].items():
         (tmp_path / name).write_bytes(data)
         sentence = refusal(tmp_path / name)
         assert re.search(pattern, sentence), (name, sentence)
 
 
-@pytest.mark.parametrize("kind", ["uint8", "int16", "float32", "float64"])
-@pytest.mark.parametrize("shape", [(6, 5, 4), (600, 5, 4), (1, 1, 1)])
-@pytest.mark.parametrize("surplus", [-1, 1, 7, 100000])
-def test_that_a_raw_file_of_another_length_is_refused(kind, shape, surplus, tmp_path) -> None:
-    """48 files: one byte too many is as wrong as one too few, for then the shape is not what it is."""
+@pytest.mark.parametrize("surplus", [-1, 1, 100000])
+def test_that_a_raw_file_of_another_length_is_refused(surplus, tmp_path) -> None:
+    """One byte too many is as wrong as one too few, for then the shape is not what it is."""
     path = tmp_path / "a.raw"
-    path.write_bytes(bytes(max(0, int(np.prod(shape)) * np.dtype(kind).itemsize + surplus)))
-    if path.stat().st_size:
-        assert "voxels of" in refusal(path, RawLayout(shape, kind))
-    else:
-        assert "is empty" in refusal(path, RawLayout(shape, kind))
+    path.write_bytes(bytes(6 * 5 * 4 * 2 + surplus))
+    assert "voxels of" in refusal(path, RawLayout((6, 5, 4), "int16"))
 
 
 def test_that_a_slice_larger_than_a_gibibyte_is_refused(tmp_path) -> None:
@@ -291,8 +218,7 @@ def test_that_a_slice_larger_than_a_gibibyte_is_refused(tmp_path) -> None:
 
 def test_that_the_good_files_behind_the_broken_ones_are_read(tmp_path) -> None:
     """Else every refusal above would prove nothing."""
-    good = {"a.npy": npy("{'descr': '<i2', 'fortran_order': False, 'shape': (4, 5, 6), }\n")}
-    good |= {"a.nrrd": nrrd("x", None), "a.mha": mha("x", None)}
+    good = {"a.npy": npy(NPY), "a.nrrd": nrrd("x", None), "a.mha": mha("x", None)}
     for name, data in good.items():
         (tmp_path / name).write_bytes(data)
         found = open_slabs(tmp_path / name, voxel_size=1.0, kind="grey").read(0, 4)

@@ -1,6 +1,6 @@
 """Files that once broke a parser, and files made to keep one busy: each has its answer now.
 
-The small files were found by atheris and the mutations beside this file. Through
+The small files were found by fuzzing and by the mutations beside this file. Through
 the sandbox a small file has 1.5 s of work, so that an answer other than giving up proves that a trap is none.
 """
 

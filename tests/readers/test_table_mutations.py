@@ -1,4 +1,4 @@
-"""Tables, fits, models, cards, recipes, projects, datasets, archives and slices with bytes changed at random.
+"""Positions, tables, fits, models, cards, recipes, projects, datasets, slices with bytes changed at random.
 
 Every reader gives values or one sentence, nothing else; all are asked in this process, so that nothing
 but the error of a bad file passes for an answer.
@@ -21,7 +21,12 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
-from regolith_studio.readers.sandbox.tasks import open_volume_file, read_checked_slices, read_number_rows
+from regolith_studio.readers.sandbox.tasks import (
+    open_volume_file,
+    parse_positions,
+    read_checked_slices,
+    read_number_rows,
+)
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.outputs.measurements import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
@@ -31,6 +36,7 @@ from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.sample import Sample
 from tests.dataset.example import example_dataset
 from tests.readers.mutations import check_sentence, folder_in_memory, mutated
+from tests.readers.test_bad_tables import SEEDS
 
 Reader = Callable[[Path], Any]
 
@@ -71,7 +77,15 @@ def dataset(path: Path) -> Any:
     return read_document(path.parent)
 
 
+def positions(path: Path) -> Any:
+    """Finite positions."""
+    parsed, _ = parse_positions(path.read_bytes(), path)
+    assert np.isfinite(parsed.points).all()
+    return parsed
+
+
 CASES: dict[str, Reader] = {
+    **{f"positions/{name}": positions for name in SEEDS},
     "complex/grain.anm": table,
     "shtools/grain.shc": table,
     "fit/fit.json": source,
@@ -97,6 +111,8 @@ def write_all(place: Path) -> None:
     """A well-formed file of each kind in a folder of its own, with what belongs to it."""
     for name in CASES:
         (place / name).parent.mkdir(exist_ok=True)
+    for name, data in SEEDS.items():
+        (place / "positions" / name).write_bytes(data)
     (place / "complex/grain.anm").write_text(coefficients(" ", lambda degree: -degree))
     (place / "shtools/grain.shc").write_text(coefficients(", ", lambda _: 0))
     sphere = icosphere(2)
