@@ -221,6 +221,15 @@ def is_origin(note: str) -> bool:
     return note.startswith(_VIRTUAL)
 
 
+def drawn_group(part: str, title: str) -> str:
+    """Group of drawn particles, where they have no part not that of the particles of the model.
+
+    - ``part``: the mixture's part that they were drawn from, if it has parts.
+    - ``title``: of their population.
+    """
+    return part or f"{title} (virtual)"
+
+
 def make_particles(draws: Realizations, model: FittedModel, title: str, level: int | None = None) -> Steps:
     """The drawn particles as a recipe with a population of the name `title` has them, with progress.
 
@@ -228,10 +237,11 @@ def make_particles(draws: Realizations, model: FittedModel, title: str, level: i
     """
     yield Started(N_("Making meshes"), len(draws))
     level = level_for(draws.l_max) if level is None else level
-    names, groups = drawn_names(title, len(draws)), groups_of(draws, model)
+    names, parts = drawn_names(title, len(draws)), groups_of(draws, model)
     notes, made = (_origin(draws),), []
-    for index, (name, group) in enumerate(zip(names, groups, strict=True)):
-        made.append(Particle(name, virtual_mesh(draws, index, level), group or title, notes=notes))
+    for index, (name, part) in enumerate(zip(names, parts, strict=True)):
+        group = drawn_group(part, title)
+        made.append(Particle(name, virtual_mesh(draws, index, level), group, notes=notes))
         yield Progress(index + 1, len(draws), name)
     return tuple(made)
 

@@ -12,6 +12,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
@@ -137,6 +138,7 @@ def test_that_the_drawn_particle_follows_the_spectrum_of_a_material(page):
 
 def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     page.source.choose_source("ma165")
+    page.source.l_max.setValue(12)
     page.source.fit.click()
     page.drawing.setValue({"n": 4, "seed": 2, "size_range": [9.0, 11.0]})
     page.drawing.draw.click()
@@ -152,7 +154,11 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     assert page.drawing.card.record.state is ResultState.CURRENT
     assert page.gallery.frame.view.picture().std() > 5
     page.drawing.adopt.click()
-    assert [entry.id for entry in page._context.session.particles] == [f"ma165-000{i}" for i in range(4)]
+    opened = page._context.session.particles
+    assert [entry.id for entry in opened] == [f"ma165-000{i}" for i in range(4)]
+    assert {entry.particle.group for entry in opened} == {"ma165 (virtual)"}, "apart from measured ones"
+    level = level_for(page._drawn.draws.l_max)
+    assert {len(entry.particle.mesh.faces) for entry in opened} == {20 * 4**level}
     wait(lambda: page.source.source.itemText(0) == "Open particles (4)")
 
 

@@ -14,7 +14,7 @@ from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.io.file_names import name_key, unique_name
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import open_executor
-from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
+from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_group, drawn_names, groups_of
 from regolith_studio.jobs.scan_jobs import scratch_folder
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableReading
@@ -155,8 +155,8 @@ class VirtualInput(_NamedInput):
 
     def particle(self) -> Particle:
         """The particle's surface."""
-        draws, groups = _cached_draws(self.population.model_dump_json(), self.model, self.seed)
-        group = groups[self.index] or title_of(self.population)
+        draws, parts = _cached_draws(self.population.model_dump_json(), self.model, self.seed)
+        group = drawn_group(parts[self.index], title_of(self.population))
         return Particle(self.name, virtual_mesh(draws, self.index, self.level), group)
 
 

@@ -16,6 +16,7 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
+from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.model_jobs import (
     GenerationRequest,
@@ -216,7 +217,6 @@ def drawn_record(drawn: GenerationResult, fitted: ModelFitResult | None) -> Resu
 
 SOURCE_FILTER = N_("Fits, models and material cards (*.json);;All files (*)")
 DRAWN = N_("A drawn particle")
-POPULATION_LEVEL = 4
 MAX_ADOPTED = 2000
 """Maximum number of drawn particles that are opened, as each becomes a mesh in memory."""
 
@@ -352,8 +352,9 @@ class ModelPage(PageWidget):
                 )
             )
             return
-        origin = VirtualSource.of(self._drawn, self._fitted, POPULATION_LEVEL)
-        job = Job(make_particles, (draws, self._drawn.model, origin.population.name, POPULATION_LEVEL))
+        level = level_for(draws.l_max)
+        origin = VirtualSource.of(self._drawn, self._fitted, level)
+        job = Job(make_particles, (draws, self._drawn.model, origin.population.name, level))
         self._context.start(
             tr("Making virtual particles"), job, lambda made: self._take_over(made, origin), queue="adopt"
         )

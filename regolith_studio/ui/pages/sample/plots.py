@@ -265,7 +265,6 @@ class StatisticsPanel(QWidget):
         self.table.verticalHeader().hide()
         FontRowHeight(self.table, 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        self.table.horizontalHeader().setStretchLastSection(True)
         self.table.setFrameShape(self.table.Shape.NoFrame)
         vbox(self.card, (self.table, 1), parent=self, margins=(8, 8, 8, 4))
         self.distribution = QWidget()
