@@ -229,8 +229,8 @@ def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30)
     """Panels below each other, with a scroll bar where they do not fit; at least so many pixels wide."""
     inside = QWidget()
     column = QVBoxLayout(inside)
-    column.setSpacing(12)
-    column.setContentsMargins(4, 8, 12, 6)
+    column.setSpacing(8)
+    column.setContentsMargins(4, 8, 12, 4)
     for panel in panels:
         column.addWidget(panel)
     column.addStretch(1)

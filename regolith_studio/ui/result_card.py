@@ -324,6 +324,7 @@ class RunController:
         self._warning, self._stop_note, self._changed = warning, stopped, changed
         self._task, self.running = 0, False
         self._ended: ResultState | None = None
+        self._earlier = ResultRecord()
         card.startRequested.connect(start)
         card.stopRequested.connect(self.stop)
         context.bindings.refresh("tasks", self._follow, slow=True)
@@ -339,6 +340,7 @@ class RunController:
         show: Callable[[Any], ResultRecord | None],
         note: str = "",
         ended: Callable[[], object] | None = None,
+        earlier: ResultRecord | None = None,
     ) -> None:
         """Start a job.
 
@@ -350,7 +352,10 @@ class RunController:
             On the card until there is a result.
         ended
             Called when the job has failed or was stopped.
+        earlier
+            Shown again, as an earlier result, if the job fails without one; by default what the card shows.
         """
+        self._earlier = earlier or self._card.record
         self._on_end, self._ended = ended or (lambda: None), None
         self._set_running(True)
         self._show(ResultRecord(state=ResultState.RUNNING, note=note))
@@ -394,7 +399,7 @@ class RunController:
         self._set_running(False)
         self._on_end()
         self._ended = ResultState.FAILED
-        self._show(replace(self._card.record, state=self._ended, note=failure.sentence))
+        self._show(replace(self._record_of_failure(), state=self._ended, note=failure.sentence))
         self._context.toast.problem(failure.sentence, failure.details)
 
     def _stop(self) -> None:
@@ -403,6 +408,14 @@ class RunController:
         self._ended = ResultState.STOPPED
         note = self._stop_note or self._card.record.note
         self._show(replace(self._card.record, state=self._ended, note=note))
+
+    def _record_of_failure(self) -> ResultRecord:
+        """What a job that has failed leaves: its partial result, else the earlier one, marked so."""
+        partial, earlier = self._card.record, self._earlier
+        if partial.values or not earlier.values:
+            return partial
+        mark, origin = tr("earlier result"), earlier.made_from
+        return earlier if origin.startswith(mark) else replace(earlier, made_from=f"{mark}, {origin}")
 
     def _set_running(self, running: bool) -> None:
         self.running = running

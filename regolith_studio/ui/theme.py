@@ -218,7 +218,10 @@ def _palette(theme: Theme) -> QPalette:
 
 
 def _style_sheet() -> str:
-    """Colours are named by their role in the palette, so that the sheet is the same in every theme."""
+    """Colours are named by their role in the palette, so that the sheet is the same in every theme.
+
+    Under any sheet Qt makes spin boxes lower than a line of text, so their height is set.
+    """
     return f"""
 QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 QToolTip {{ color: palette(text); background: palette(button); border: 1px solid palette(mid);
@@ -245,6 +248,7 @@ QFrame[role="card"] {{ background: palette(base); border: 1px solid palette(mid)
 QFrame[role="card"][focused="true"] {{ border-color: palette(highlight); }}
 QFrame[role="card"] QAbstractSpinBox, QFrame[role="card"] QLineEdit, QTabWidget QAbstractSpinBox,
 QTabWidget QLineEdit {{ background-color: palette(button); }}
+QAbstractSpinBox {{ min-height: 1em; }}
 QFrame[role="toast"] {{ background: palette(button); border: 1px solid palette(bright-text);
     border-radius: 6px; }}
 QFrame[role="toast"][kind="note"] {{ border-color: palette(highlight); }}

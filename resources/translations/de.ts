@@ -7568,6 +7568,10 @@
         <translation>jedes zählt einmal</translation>
     </message>
     <message>
+        <source>earlier result</source>
+        <translation>früheres Ergebnis</translation>
+    </message>
+    <message>
         <source>edges of more than two faces</source>
         <translation>Kanten von mehr als zwei Flächen</translation>
     </message>

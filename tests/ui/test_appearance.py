@@ -303,3 +303,17 @@ def test_that_a_combo_box_becomes_as_small_as_its_letters_again(shown):
     assert box.minimumSizeHint().height() > before.height()
     box.setFont(usual)
     assert box.minimumSizeHint() == before
+
+
+@pytest.mark.usefixtures("usual_looks")
+@pytest.mark.parametrize("percent", [100, 150, 200, 80])
+def test_that_a_line_of_text_is_as_high_as_its_letters_in_a_spin_box(app, shown, percent):
+    panel = shown(QWidget())
+    field, column = QDoubleSpinBox(), QVBoxLayout(panel)
+    field.setSuffix(" g")
+    column.addWidget(field)
+    choose_font_size(percent)
+    apply_theme(app, LIGHT, panel)
+    panel.resize(200, panel.minimumSizeHint().height())
+    app.processEvents()
+    assert field.lineEdit().height() >= field.fontMetrics().height()

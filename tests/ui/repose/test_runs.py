@@ -7,6 +7,7 @@ import pytest
 
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.engine import check_run
+from regolith_studio.dem.engine_process import EngineError
 from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import JobCancelled
@@ -82,6 +83,31 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     page.setup.particles.setValue(60)
     wait(lambda: len(page.player.pile) == 60)
     assert "Not run yet" in page.angle.sentence.text()
+
+
+def test_that_a_failed_run_leaves_the_earlier_angle_marked_as_such(
+    page, dataset, wait, monkeypatch, tmp_path
+):
+    small(page, dataset)
+    import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
+    wait(lambda: page._measured is not None)
+    before = page.angle.figures[0].text()
+
+    def dies(*_):
+        yield Partial(Snapshot(pile_of(20.0, 40), 0.5, "lift"))
+        raise EngineError("The engine was ended by signal 9.")
+
+    monkeypatch.setattr("regolith_studio.ui.pages.repose.page.repose_steps", dies)
+    for _ in range(2):
+        page.run_test()
+        assert "°" not in page.angle.figures[0].text() or not page.run.running
+        wait(lambda: not page.busy())
+        assert page.angle.figures[0].text() == before
+        assert not page.angle.figures[0].isEnabled()
+        words = page.angle.sentence.text()
+        assert "Failed: earlier result, " in words
+        assert words.count("earlier result") == 1
+        assert "signal 9" in words
 
 
 @pytest.mark.slow

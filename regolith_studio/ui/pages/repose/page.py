@@ -270,6 +270,7 @@ class ReposePage(PageWidget):
             if request.case.drum
             else tr("The angle is measured when the particles have come to rest.")
         )
+        earlier = self.angle.record
         self._show_nothing(note)
         self.tabs.setCurrentIndex(0)
         folder = self._new_folder(f"{dataset.name}-{request.case.n_particles}")
@@ -280,6 +281,7 @@ class ReposePage(PageWidget):
             self._show_progress,
             note,
             self._end_run,
+            earlier,
         )
 
     def open_positions(self) -> None:
