@@ -1,7 +1,7 @@
 """Jobs for the angle of repose (2.6, 3.3): simulate the lifting cylinder, measure the pile."""
 
 import time
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
@@ -36,10 +36,16 @@ from regolith_studio.dem.run_io import (
     with_kept_filling,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
-from regolith_studio.dem.verification.certificate import MEASUREMENTS, QUICK, measure_lines, verifiable_engine
+from regolith_studio.dem.verification.certificate import (
+    MEASUREMENTS,
+    QUICK,
+    Turn,
+    measure_lines,
+    verifiable_engine,
+)
 from regolith_studio.dem.verification.heaps import SEEDS, HeapRuns, step_pair
 from regolith_studio.errors import InputError, MissingRequirement
-from regolith_studio.jobs.events import Job, JobResult, Partial, Progress, Started, Steps
+from regolith_studio.jobs.events import Job, JobResult, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, value_of
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
 from regolith_studio.messages import N_
@@ -287,7 +293,14 @@ def verify_engine(key: str, quick: bool = False) -> Steps:
 
     ``key``: of the engine. ``quick``: leave out what takes more than minutes: gravity and dice.
     """
-    runs, keys, done = HeapRuns(verifiable_engine(key)), QUICK if quick else MEASUREMENTS, 0
+    runs, keys = HeapRuns(verifiable_engine(key)), QUICK if quick else MEASUREMENTS
+
+    def events(turn: Turn) -> Iterator[Step]:
+        name, line = turn
+        if line is not None:
+            yield Partial(line)
+        yield Progress(keys.index(name) + (line is not None), len(keys), name)
+
     yield Started(N_("Verifying the engine"), len(keys))
     n, others = cores() - 1, SEEDS[1:]
     with closing(Executor(len(others), ProcessPoolRunner(n) if n else None)) as executor:
@@ -295,16 +308,7 @@ def verify_engine(key: str, quick: bool = False) -> Steps:
             pairs = executor.results(Job(_step_pair, (key, seed)) for seed in others)
             next(pairs)  # submits them all
             runs.further_pairs = partial(_values, pairs)
-        steps = measure_lines(runs, keys)
-        while True:
-            try:
-                name, line = next(steps)
-            except StopIteration as end:
-                return end.value
-            if line is not None:
-                done += 1
-                yield Partial(line)
-            yield Progress(done, len(keys), name)
+        return (yield from as_events(measure_lines(runs, keys), events))
 
 
 def _step_pair(key: str, seed: int) -> Steps:

@@ -7,6 +7,7 @@ from typing import Any
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.verification import MeasuredLine, Measurement, VerifiableEngine, heaps, scenes
 from regolith_studio.errors import InputError, MissingRequirement
+from regolith_studio.steps import as_events
 
 SCENES: Mapping[str, Measurement] = {
     "incline": scenes.incline,
@@ -72,23 +73,24 @@ def verifiable_engine(key: str) -> VerifiableEngine:
     return engine
 
 
-def measure_lines(
-    runs: heaps.HeapRuns, keys: tuple[str, ...]
-) -> Generator[tuple[str, MeasuredLine | None], None, Certificate]:
+Turn = tuple[str, MeasuredLine | None]
+"""Key of a line, and the line when it is done."""
+
+
+def measure_lines(runs: heaps.HeapRuns, keys: tuple[str, ...]) -> Generator[Turn, None, Certificate]:
     """Measure lines; yields the key of the line at each turn, and the line as it is done."""
-    lines, engine = [], runs.engine
+    lines = []
     for key in keys:
-        steps = HEAPS[key](runs) if key in HEAPS else SCENES[key](engine)
-        while True:
-            try:
-                next(steps)
-            except StopIteration as end:
-                lines.append(end.value)
-                yield key, end.value
-                break
-            yield key, None
+        lines.append((yield from _measure_line(runs, key)))
     left_out = tuple(key for key in MEASUREMENTS if key not in keys)
-    return Certificate(engine.key, engine.find().version, tuple(lines), left_out)
+    return Certificate(runs.engine.key, runs.engine.find().version, tuple(lines), left_out)
+
+
+def _measure_line(runs: heaps.HeapRuns, key: str) -> Generator[Turn, None, MeasuredLine]:
+    steps = HEAPS[key](runs) if key in HEAPS else SCENES[key](runs.engine)
+    line = yield from as_events(steps, lambda _step: ((key, None),))
+    yield key, line
+    return line
 
 
 def certificate_document(certificate: Certificate) -> dict[str, Any]:
