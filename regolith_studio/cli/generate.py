@@ -320,6 +320,7 @@ def match(
     seed: Seed = 0,
 ) -> None:
     """Say how near simulants are to a soil, and which mixture of them is nearest, in grams."""
+    from regolith_studio.cli.batch_options import print_notes
     from regolith_studio.jobs.matching_jobs import MatchRequest, match_materials
     from regolith_studio.readers.settings import unit_factor
     from regolith_studio.steps import result_of
@@ -333,9 +334,11 @@ def match(
     table = found.match.table(mass)
     if output is not None:
         result_of(found.written(output, mass))
+    print_notes(found.notes)
     print_errors(problem.with_path for problem in found.problems)
     if json:
-        print_json({"target": target, "materials": table.records, "notes": found.match.notes})
+        notes = (*found.match.notes, *found.notes)
+        print_json({"target": target, "materials": table.records, "notes": notes})
     else:
         print_table(table)
         typer.echo(" ".join((f"Nearest by itself: {found.match.nearest.name}.", *table.notes)))

@@ -45,10 +45,11 @@ class MatchRequest:
 
 @dataclass(frozen=True, eq=False)
 class DrawnMatch:
-    """A comparison, what could not be read, and its picture as PNG."""
+    """A comparison, what could not be read, what is noted on tables, and its picture as PNG."""
 
     match: Match
     problems: tuple[FileProblem, ...]
+    notes: tuple[str, ...] = ()
     picture: bytes = b""
 
     def written(self, folder: Path, mass: float = 100.0) -> Steps:
@@ -95,28 +96,39 @@ def match_materials(
         *(_CHORDS if chords else ()),
     )
     problems: list[FileProblem] = []
+    notes: list[str] = []
     with open_executor(workers) as executor:
         if isinstance(target, str):
-            groups = yield from _measured(target, keys, request, executor, problems)
+            groups = yield from _measured(target, keys, request, executor, problems, notes)
             soil = ComparedMaterial(Path(target).name, _joined(list(groups.values())))
         else:
             soil = ComparedMaterial("sample", (yield from _measured_particles(target, keys, request)))
         parts: list[ComparedMaterial] = []
         for name in candidates:
-            measured = yield from _measured(name, keys, request, executor, problems)
+            measured = yield from _measured(name, keys, request, executor, problems, notes)
             title = Path(name).name.removesuffix(".zip")
             for group, columns in measured.items():
                 inner = group if group not in ("", title) else ""
                 parts.append(ComparedMaterial("/".join(filter(None, (title, inner))), columns))
     yield Started(N_("Comparing"))
-    return DrawnMatch(match(soil, parts, request.weighting, request.seed), tuple(problems))
+    try:
+        found = match(soil, parts, request.weighting, request.seed)
+    except InputError as error:
+        lost = f" {len(problems):,} not read, the first: {problems[0].with_path}" if problems else ""
+        raise InputError(f"{error}{lost}") from error
+    return DrawnMatch(found, tuple(problems), tuple(notes))
 
 
 _Columns = Mapping[str, np.ndarray]
 
 
 def _measured(
-    name: str, keys: tuple[str, ...], request: MatchRequest, executor: Executor, problems: list[FileProblem]
+    name: str,
+    keys: tuple[str, ...],
+    request: MatchRequest,
+    executor: Executor,
+    problems: list[FileProblem],
+    notes: list[str],
 ) -> Steps:
     """Columns of each group of what a name stands for."""
     path = Path(name)
@@ -125,7 +137,9 @@ def _measured(
         draws = materials()[name].model().draw(min(N_DRAWN, request.most), request.seed)
         return {"": _columns(descriptors_of(draws, keys), keys)}
     if path.suffix.lower() in SUFFIXES:
-        return {"": read_shape_table(path, request.unit).columns}
+        table = read_shape_table(path, request.unit)
+        notes += [f"{path.name}: {note}" for note in table.notes]
+        return {"": table.columns}
     found: list[FileProblem] = []
     files = _chosen(find_files([path], found), request)
     if not files:

@@ -1,7 +1,7 @@
 """Archives of meshes: which members they have, and where the bytes of each are."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -21,7 +21,7 @@ from regolith_studio.readers.sandbox.parent import (
     checked_size,
     shared_sandbox,
 )
-from regolith_studio.readers.zip_members import SUFFIX, Place
+from regolith_studio.readers.zip_members import SUFFIX, Place, left_out_sentence
 
 MAX_DEPTH = 4
 """Of archives in archives."""
@@ -106,31 +106,40 @@ def archive_content(path: Path) -> ArchiveContent:
 
 @lru_cache(maxsize=1)
 def _content(path: Path, _size: int, _time: int) -> ArchiveContent:
-    problems: list[tuple[str, str]] = []
-    left = [MAX_ARCHIVES]
-    return ArchiveContent(tuple(_walk(path, (), "", problems, left)), tuple(problems))
+    walk = _Walk(path)
+    members = tuple(walk.members((), ""))
+    if walk.beyond:
+        reason = f"more than {MAX_DEPTH} archives in each other or {MAX_ARCHIVES:,} in one are not read"
+        walk.problems.append((str(path), f"{display_name(path)} {left_out_sentence(reason, walk.beyond)}"))
+    return ArchiveContent(members, tuple(walk.problems))
 
 
-def _walk(
-    path: Path, chain: tuple[Place, ...], prefix: str, problems: list[tuple[str, str]], left: list[int]
-) -> Iterator[ArchiveMember]:
-    """The members of an archive (in an archive), and of those in it."""
-    shown = str(path / prefix)
-    names, places, refused = _listed(path, chain, prefix)
-    problems += [(shown, f"{display_name(path / prefix)} {sentence}") for sentence in refused]
-    for name, place in _in_order(names, places, all(each.method == ZIP_STORED for each in chain)):
-        inner = (*chain, place)
-        if not is_archive(Path(name)):
-            yield ArchiveMember(path, inner, prefix + name)
-            continue
-        left[0] -= 1
-        try:
-            if len(inner) > MAX_DEPTH or left[0] < 0:
-                limit = f"{MAX_DEPTH} archives in each other or {MAX_ARCHIVES:,} in one"
-                raise FileError(f"{display_name(Path(name))} was left out: more than {limit}.")
-            yield from _walk(path, inner, f"{prefix}{name}/", problems, left)
-        except FileError as error:
-            problems.append((f"{path / prefix / name}", str(error)))
+@dataclass
+class _Walk:
+    """Through an archive and those in it; ``beyond`` the limits of depth and number none is opened."""
+
+    path: Path
+    problems: list[tuple[str, str]] = field(default_factory=list)
+    beyond: list[str] = field(default_factory=list)
+    n_opened: int = 0
+
+    def members(self, chain: tuple[Place, ...], prefix: str) -> Iterator[ArchiveMember]:
+        """The members of an archive, and of those in it."""
+        here = self.path / prefix
+        names, places, refused = _listed(self.path, chain, prefix)
+        self.problems += [(str(here), f"{display_name(here)} {sentence}") for sentence in refused]
+        for name, place in _in_order(names, places, all(each.method == ZIP_STORED for each in chain)):
+            inner = (*chain, place)
+            if not is_archive(Path(name)):
+                yield ArchiveMember(self.path, inner, prefix + name)
+            elif len(inner) > MAX_DEPTH or self.n_opened == MAX_ARCHIVES:
+                self.beyond.append(prefix + name)
+            else:
+                self.n_opened += 1
+                try:
+                    yield from self.members(inner, f"{prefix}{name}/")
+                except FileError as error:
+                    self.problems.append((f"{here / name}", str(error)))
 
 
 def _in_order(names: list[str], places: list[Place], by_name: bool) -> list[tuple[str, Place]]:

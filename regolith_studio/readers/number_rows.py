@@ -294,11 +294,17 @@ def named_columns(data: bytes) -> DescriptorColumns:
         raise FileError("is not a table of words and numbers.") from None
     if not rows:
         raise FileError("is empty: it has no row of names.")
-    found = {}
+    found: dict[str, tuple[int, str]] = {}
+    notes = []
     for place, cell in enumerate(rows[0]):
-        key, unit = _column(cell)
-        if key and key not in found:
+        key, unit, unknown = _column(cell)
+        shown = printable(cell.strip())[:40]
+        if key in found:
+            notes.append(f"Left out the column “{shown}”: an earlier one has {key}.")
+        elif key:
             found[key] = (place, unit)
+            if unknown:
+                notes.append(f"The column “{shown}” names no known unit of length; the given one is taken.")
     if not found:
         names = ", ".join(printable(cell.strip())[:20] for cell in rows[0][:6])
         raise FileError(f"has no column of length, width and thickness; its columns are {names}.")
@@ -310,24 +316,23 @@ def named_columns(data: bytes) -> DescriptorColumns:
     if not good.any():
         raise FileError(f"has no row with positive numbers in {', '.join(found)}.")
     lost = int((~good).sum())
-    notes = (
-        [f"Left out {plural(lost, 'row')} without positive numbers in {', '.join(found)}."] if lost else []
-    )
+    if lost:
+        notes.append(f"Left out {plural(lost, 'row')} without positive numbers in {', '.join(found)}.")
     units = tuple(unit for _, unit in found.values())
     return DescriptorColumns(tuple(found), units, tuple(values[good].T), tuple(notes))
 
 
-def _column(cell: str) -> tuple[str, str]:
-    """Key and unit of a column; empty for others."""
+def _column(cell: str) -> tuple[str, str, bool]:
+    """Key and unit of a column, empty for others, and whether it states another unit than those of length."""
     match = _COLUMN.fullmatch(cell)
     if match is None:
-        return "", ""
+        return "", "", False
     name = " ".join(match[1].lower().replace("_", " ").split())
     key = match[1] if match[1] in (*_OWN, *_NAMES) else _KEYS.get(name, "")
     if not key:
-        return "", ""
+        return "", "", False
     unit = unit_named(re.sub(r"[\^]?[23³²]$", "", match[2] or "")) or ""
-    return key, unit
+    return key, unit, bool(match[2]) and not unit and (key in _NAMES or key == "equivalent_radius")
 
 
 def _cell(row: list[str], place: int, decimal_comma: bool) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.readers.error_messages import display_name
+from regolith_studio.readers.error_messages import display_name, plural
 from regolith_studio.readers.sandbox.parent import read_bytes, shared_sandbox
 from regolith_studio.readers.settings import FILE_UNITS, unit_factor
 
@@ -25,7 +25,7 @@ class ShapeTable:
 
     - ``name``: of the file without its ending.
     - ``columns``: values by keys of the catalogue, in micrometres, each of shape (n,).
-    - ``notes``: sentences about rows that were left out.
+    - ``notes``: sentences about rows and columns that were left out or seem to be something else.
     """
 
     name: str
@@ -47,18 +47,21 @@ def read_shape_table(path: str | Path, unit: str = "um") -> ShapeTable:
     path, factor = Path(path), unit_factor(unit)
     answer = shared_sandbox().request("named-columns", path)
     columns: dict[str, FloatArray] = {}
+    notes: list[str] = list(answer.header["notes"])
     for key, stated, values in zip(answer.header["keys"], answer.header["units"], answer.arrays, strict=True):
         scale = FILE_UNITS[stated] if stated else factor
         columns[key] = values * scale ** _POWERS.get(key, 1)
     if {LENGTH, WIDTH, THICKNESS} <= set(columns):
         length, width, thickness = (columns[key] for key in (LENGTH, WIDTH, THICKNESS))
+        unordered = int(((width > 1.001 * length) | (thickness > 1.001 * width)).sum())
+        if unordered:
+            notes.append(
+                f"In {plural(unordered, 'row')} the width exceeds the length, or the thickness the width: "
+                "the columns may mean other lengths."
+            )
         ratios = {"width_over_length": width / length, "thickness_over_width": thickness / width}
         columns = {"volume": np.pi / 6 * length * width * thickness, **columns, **ratios}
-    return ShapeTable(
-        path.stem,
-        columns,
-        tuple(answer.header["notes"]),
-    )
+    return ShapeTable(path.stem, columns, tuple(notes))
 
 
 _LARGEST = 16 * 2**20

@@ -69,7 +69,7 @@ def listed_members(
         names.append("/".join(parts))
         place = (info.header_offset + shift, info.compress_size, info.file_size, info.CRC, info.compress_type)
         places.append(Place(*place))
-    return names, places, [_sentence(reason, given) for reason, given in refused.items()]
+    return names, places, [left_out_sentence(reason, given) for reason, given in refused.items()]
 
 
 def member_bytes(path: Path, chain: Chain) -> bytes:
@@ -109,7 +109,8 @@ def _refusal(info: zipfile.ZipInfo, name: str, parts: Sequence[str]) -> str:
     return ""
 
 
-def _sentence(reason: str, names: Sequence[str]) -> str:
+def left_out_sentence(reason: str, names: Sequence[str]) -> str:
+    """The second half of a sentence about all members that are not read for one reason."""
     shown = f"“{printable(names[0])[-60:]}”"
     more = f" and {len(names) - 1:,} more: the first is refused because" if names[1:] else ":"
     return f"left out {shown}{more} {reason}."

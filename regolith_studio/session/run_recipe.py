@@ -38,7 +38,7 @@ from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, study_coarsening, study_lmax
 from regolith_studio.messages import N_
 from regolith_studio.readers.archives import archive_of
-from regolith_studio.readers.particles import left_out
+from regolith_studio.readers.particles import FileProblem, left_out
 from regolith_studio.session.batch.inputs import BatchInputs, FileInput, read_members
 from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
 from regolith_studio.session.batch.preprocessing import PreparedInputs, clear_prepared_inputs, prepare_inputs
@@ -276,12 +276,20 @@ def _count_results(run: RecipeRun, batch: Batch) -> None:
 
 
 def _records(run: RecipeRun, batch: Batch) -> Iterator[CheckpointRecord]:
-    """The record of each particle; those whose process died get a name and a failure."""
+    """The record of each particle; those whose process died get a name and a failure.
+
+    Of a file that could not be read the reason names the path, as files of several fractions have one name.
+    """
     for record in batch.checkpoint.records():
+        member = run.items.members[record.index]
         if LOST in record.values:
             failures = [{"stage": LOST, "reason": record.values[LOST]}]
-            name = run.items.members[record.index].name
-            record = dataclasses.replace(record, values={"name": name, "group": "", "failures": failures})
+            values = {"name": member.name, "group": "", "failures": failures}
+            record = dataclasses.replace(record, values=values)
+        if isinstance(member, FileInput):
+            for failure in record.values["failures"]:
+                if failure["stage"] == "reading":
+                    failure["reason"] = FileProblem(str(member.file.path), failure["reason"]).with_path
         yield record
 
 

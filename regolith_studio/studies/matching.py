@@ -17,6 +17,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_
+from regolith_studio.readers.error_messages import plural
 from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein
 
 SIZES = ("equivalent_radius", "width")
@@ -203,7 +204,9 @@ def _check(target: ComparedMaterial, candidates: Sequence[ComparedMaterial]) -> 
             raise InputError(f"{each.name} has no size: neither volume, equivalent_radius nor width.")
         count = len(next(iter(each.columns.values()), ()))
         if count < MIN_ROWS:
-            raise InputError(f"{each.name} has {count} particles; a comparison needs at least {MIN_ROWS}.")
+            raise InputError(
+                f"{each.name} has {plural(count, 'particle')}; a comparison needs at least {MIN_ROWS}."
+            )
 
 
 def _common_keys(materials: Sequence[ComparedMaterial]) -> tuple[str, ...]:
@@ -239,8 +242,11 @@ class _Comparison:
         own = self._parts[0]
         share = self._weights[own] / self._weights[own].sum()
         mean = share @ features[own]
-        spread = np.sqrt(share @ (features[own] - mean) ** 2)
-        features = features / np.maximum(spread, 1e-300)
+        scatter = np.sqrt(share @ (features[own] - mean) ** 2)
+        # What the target has one value of, but for rounding, is measured by the scatter of all.
+        for unit in (features.std(axis=0), np.ones(len(keys))):
+            scatter = np.where(scatter > 1e-9 * (1.0 + np.abs(mean)), scatter, unit)
+        features = features / scatter
         self._distances = cdist(features, features)
 
     def forms(self, counts: Sequence[FloatArray]) -> list[FloatArray]:

@@ -36,7 +36,8 @@ def test_that_an_archive_is_described_into_a_folder_and_resumed(command, library
     output = tmp_path / "out"
     result = command("describe", library, "-o", output, "--chords")
     assert result.code == 1
-    assert "nothing.stl is empty: it has no bytes at all." in result.err
+    reason = f"{library}/75m/nothing.stl is empty: it has no bytes at all."
+    assert reason in result.err
     assert f"6 particles, 1 problem in {output}" in " ".join(result.out.split())
     table = csv_rows(output / "descriptors.csv")
     assert [row["name"] for row in table] == NAMES
@@ -47,7 +48,8 @@ def test_that_an_archive_is_described_into_a_folder_and_resumed(command, library
         assert float(row["volume [um^3]"]) == pytest.approx(expected["volume"])
     assert float(table[0]["width [um]"]) == pytest.approx(40, rel=0.02)
     assert float(table[0]["thickness_over_width"]) == pytest.approx(15 / 20, rel=0.02)
-    assert [row["name"] for row in csv_rows(output / "failed.csv")] == ["nothing"]
+    failed = csv_rows(output / "failed.csv")
+    assert [(row["name"], row["reason"]) for row in failed] == [("nothing", reason)]
     again = command("describe", library, "-o", output, "--chords", "--resume", "--json")
     assert (again.json["particles"], again.code) == (0, 1)  # nothing was left to do
 

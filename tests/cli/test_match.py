@@ -1,6 +1,7 @@
 """``match`` of tables as they lie beside meshes of simulants, and of meshes."""
 
 import csv
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +45,21 @@ def test_that_a_target_out_of_reach_is_said(command, tables):
     far = command("match", tables[2], tables[1])
     assert "No mixture of the candidates is as near to coarse.csv" in far.out
     assert "No mixture" in command("match", tables[2], tables[1], "--json").json["notes"][0]
+
+
+def test_that_what_a_table_or_an_archive_lacks_is_said(command, tables, grains, tmp_path):
+    with tables[1].open("a") as file:
+        file.write("broken,1,,3\n")
+    result = command("match", *tables)
+    assert result.code == 0
+    assert "fine.csv: Left out 1 row without positive numbers" in result.err
+    with zipfile.ZipFile(tmp_path / "few.zip", "w") as archive:
+        archive.write(grains / "grain-a.stl", "75m/a.stl")
+        archive.writestr("75m/b.stl", b"")
+    few = command("match", tables[0], tmp_path / "few.zip")
+    assert (few.code, few.err.count("\n")) == (1, 1)
+    assert "few/75m has 1 particle; a comparison needs at least 20. 1 not read, the first:" in few.err
+    assert "75m/b.stl is empty" in few.err
 
 
 def test_that_what_is_no_material_is_one_sentence(command, tables, tmp_path):

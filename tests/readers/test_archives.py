@@ -159,6 +159,17 @@ def test_that_an_archive_made_to_do_harm_is_one_sentence(case, tmp_path):
     assert [each.name for each in Path(tmp_path).rglob("*")] == ["lib.zip"]
 
 
+def test_that_archives_beyond_the_limits_are_one_sentence_together(tmp_path, cube):
+    content = packed({"p.stl": cube.binary_stl()})
+    for _ in range(5):
+        content = packed({"a.zip": content, "b.zip": content})
+    (tmp_path / "lib.zip").write_bytes(packed({"n.zip": content, "p.stl": cube.binary_stl()}))
+    problems: list[FileProblem] = []
+    assert [file.path.name for file in find_files([tmp_path / "lib.zip"], problems)] == ["p.stl"]
+    (problem,) = problems
+    assert "“n.zip/a.zip/a.zip/a.zip/a.zip” and 15 more" in problem.sentence
+
+
 def test_that_members_that_share_their_bytes_are_refused(tmp_path):
     content = packed({"p.stl": STL, "q.stl": STL})
     second = content.rindex(b"PK\1\2")

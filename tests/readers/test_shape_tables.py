@@ -42,6 +42,21 @@ def test_that_rows_without_numbers_are_left_out_with_a_note(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("header", "row", "reason"),
+    [
+        ("Length (furlong),Width,Thickness", "3,2,1", "“Length (furlong)” names no known unit of length"),
+        ("L (um),L (mm),W,T", "3,9,2,1", "Left out the column “L (mm)”: an earlier one has max_feret"),
+        ("Length,Width,Thickness", "1,2,3", "In 1 row the width exceeds the length, or the thickness"),
+    ],
+)
+def test_that_columns_that_may_mean_something_else_are_noted(tmp_path, header, row, reason):
+    path = tmp_path / "table.csv"
+    path.write_text(f"{header}\n{row}\n")
+    (note,) = read_shape_table(path).notes
+    assert reason in note
+
+
+@pytest.mark.parametrize(
     ("content", "reason"),
     [
         (b"", "is empty"),

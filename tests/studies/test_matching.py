@@ -79,7 +79,7 @@ def test_that_what_cannot_be_compared_is_one_sentence():
     for candidates, weighting, reason in (
         ([], "number", "Name at least one candidate"),
         ([fine, fine], "number", "Two candidates are called fine"),
-        ([ComparedMaterial("few", drawn(rng, "fine", 5))], "number", "few has 5 particles"),
+        ([ComparedMaterial("few", drawn(rng, "fine", 1))], "number", "few has 1 particle; a comparison"),
         ([lengths], "number", "no size and shape in common"),
         ([ComparedMaterial("no size", {"sphericity": np.ones(50)})], "number", "no size has no size"),
         ([fine], "mass", "not by 'mass'"),
@@ -125,6 +125,18 @@ def test_that_a_target_out_of_reach_is_said_with_its_distance(fractions):
     near = match(blended(rng, {"fine": 200, "coarse": 100}), fractions)
     assert near.is_reached
     assert len(near.table().notes) == 2
+
+
+def test_that_a_descriptor_of_one_value_in_the_target_counts_by_the_scatter_of_all(fractions):
+    """And that rounding is no scatter: the distance does not change with the last digit of that value."""
+    rng = np.random.default_rng(6)
+    columns = drawn(rng, "middle", 200)
+    found = [
+        match(ComparedMaterial("beads", {**columns, "sphericity": np.full(200, value)}), fractions)
+        for value in (0.7, 0.7 * (1 + 1e-14 * rng.standard_normal(200)))
+    ]
+    assert found[0].mixture.energy == pytest.approx(found[1].mixture.energy, rel=1e-6)
+    assert found[0].nearest.name == "middle"
 
 
 def test_that_a_particle_drawn_twice_does_not_lower_the_mean_distance_within_its_part():

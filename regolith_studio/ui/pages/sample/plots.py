@@ -453,6 +453,8 @@ class MatchPanel(QWidget):
         self.table.set_rows([_cells(part) for part in (*match.parts, match.mixture)], _tips(found))
         self._picture.loadFromData(found.picture)
         self._scale()
+        for note in found.notes:
+            self._context.toast.note(note)
         for problem in found.problems:
             self._context.toast.problem(problem.with_path)
         values = tuple(_in_floors(part) for part in (match.nearest, match.mixture))
