@@ -61,8 +61,8 @@ def check_count(n_grains: int) -> None:
     """
     if n_grains < MIN_GRAINS:
         raise InputError(
-            f"{n_grains} grains do not carry an interval; {MIN_GRAINS} or more are needed, so at least "
-            f"{MIN_GRAINS - n_grains} more."
+            f"An interval needs {MIN_GRAINS} grains or more, {MIN_GRAINS - n_grains} more than the "
+            f"{n_grains} that there are."
         )
 
 

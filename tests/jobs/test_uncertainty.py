@@ -54,10 +54,10 @@ def _without_exact(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_that_a_sample_of_too_few_grains_is_refused_with_the_number_that_would_do(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(InputError, match="16 grains do not carry an interval; 20 or more"):
+    with pytest.raises(InputError, match="needs 20 grains or more, 4 more than the 16 that"):
         measure_uncertainty(ellipsoids(16), tmp_path, SMALL, **SETTINGS)
     assert run(["uncertainty", "sample:all", "-o", str(tmp_path / "few"), "--no-heaps"]) == 1
-    assert "so at least 8 more" in capsys.readouterr().err
+    assert "8 more than the 12 that there are" in capsys.readouterr().err
     with pytest.raises(InputError, match="power of two"):
         UncertaintyRequest(base=12)
 
