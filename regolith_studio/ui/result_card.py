@@ -292,7 +292,7 @@ class ResultView(QFrame):
 
 
 class RunController:
-    """Runs one job at a time in the background, with its state on a card.
+    """Runs one job at a time in the background, with its state on a card, which several may share.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ class RunController:
     queue
         Of the job.
     start
-        Called by the button.
+        Called by the button; ``None`` where another controller of the card does what it starts.
     stopped
         Note on the card of a job that was stopped.
     warning
@@ -315,7 +315,7 @@ class RunController:
         context: PageContext,
         card: ResultView,
         queue: str,
-        start: Callable[[], object],
+        start: Callable[[], object] | None,
         stopped: str = "",
         warning: str = "",
         changed: Callable[[bool], object] = lambda _running: None,
@@ -325,7 +325,8 @@ class RunController:
         self._task, self.running = 0, False
         self._ended: ResultState | None = None
         self._earlier = ResultRecord()
-        card.startRequested.connect(start)
+        if start is not None:
+            card.startRequested.connect(start)
         card.stopRequested.connect(self.stop)
         context.bindings.refresh("tasks", self._follow, slow=True)
 
@@ -358,6 +359,7 @@ class RunController:
         self._earlier = earlier or self._card.record
         self._on_end, self._ended = ended or (lambda: None), None
         self._set_running(True)
+        self._card.show_task(None)
         self._show(ResultRecord(state=ResultState.RUNNING, note=note))
         self._task = self._context.start(
             title,
@@ -370,8 +372,9 @@ class RunController:
         )
 
     def stop(self) -> None:
-        self._context.session.cancel(self._task)
-        self._follow()
+        if self.running:
+            self._context.session.cancel(self._task)
+            self._follow()
 
     def forget(self) -> None:
         """Stop the job silently, and clear the card: its input is there no more."""
@@ -387,8 +390,9 @@ class RunController:
 
     def _follow(self) -> None:
         """Show how far the job is."""
-        mine = (task for task in self._context.session.tasks if task.id == self._task)
-        self._card.show_task(next(mine, None))
+        for task in self._context.session.tasks:
+            if task.id == self._task:
+                self._card.show_task(task)
 
     def _finish(self, show: Callable[[Any], ResultRecord | None], result: Any) -> None:
         self._set_running(False)

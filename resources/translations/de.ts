@@ -424,6 +424,10 @@
         <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gebaut.</translation>
     </message>
     <message>
+        <source>A dataset of the open particles is being built.</source>
+        <translation>Aus den geöffneten Partikeln wird ein Datensatz gebaut.</translation>
+    </message>
+    <message>
         <source>A drawn particle</source>
         <translation>Ein gezogenes Partikel</translation>
     </message>
@@ -6078,6 +6082,10 @@
     <message>
         <source>The dataset that was made or opened last</source>
         <translation>Der zuletzt erzeugte oder geöffnete Datensatz</translation>
+    </message>
+    <message>
+        <source>The dataset was not built.</source>
+        <translation>Der Datensatz wurde nicht gebaut.</translation>
     </message>
     <message>
         <source>The dataset&apos;s polyhedra</source>

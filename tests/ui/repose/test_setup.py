@@ -21,6 +21,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.ui.layout import Collapsible, scrolled_column
 from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
+from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.widgets.forms import ParameterForm
 from tests.dem.conftest import box_dataset
 
@@ -228,7 +229,22 @@ def test_that_the_open_particles_become_a_dataset(page, wait):
     assert page.setup.dataset.name == "open-particles"
     wait(lambda: page.player.pile is not None)
     assert page.angle.button.isEnabled()
-    assert not page._context.toast.sentence.text()
+
+
+@pytest.mark.usefixtures("threads")
+def test_that_the_card_says_that_a_dataset_is_being_built_and_stops_it(page, wait):
+    page._context.session.adopt([Particle("ball", Mesh(40.0 * icosphere(2).vertices, icosphere(2).faces))])
+    page.make_dataset()
+    assert page.angle.record.state is ResultState.RUNNING
+    assert page.angle.record.note == "A dataset of the open particles is being built."
+    page.angle.button.click()
+    wait(lambda: page.angle.record.state is ResultState.STOPPED)
+    assert page.angle.record.note == "The dataset was not built."
+    assert page.setup.dataset is None
+    page.make_dataset()
+    page.make_dataset()
+    assert page._context.toast.sentence.text() == page.angle.record.note, "it is built once"
+    wait(lambda: page.setup.dataset is not None)
 
 
 def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking):

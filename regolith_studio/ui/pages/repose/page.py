@@ -71,6 +71,7 @@ PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""
 ANGLE_SIZE, ANGLE_LINES = 4.5, 5
 """Size of the angle in units of the letters, and lines of text beside it."""
+BUILDING = N_("A dataset of the open particles is being built.")
 RUN, PREVIEW, MEASURE, BUILD, EXPORT = "run", "preview", "measure", "build", "export"
 
 
@@ -117,6 +118,8 @@ class ReposePage(PageWidget):
             tr("A simulation of the angle of repose would be stopped."),
             lambda _running: self._offer_run(),
         )
+        note = tr("The dataset was not built.")
+        self.building = RunController(self._context, self.angle, BUILD, None, note)
         self.studies = StudyController(self._context, self.study, self.setup, lambda: self._folder)
         self.calibrations = CalibrationController(
             self._context, self.calibration, self.setup, lambda: self._folder
@@ -233,12 +236,24 @@ class ReposePage(PageWidget):
         if not particles:
             self._context.toast.problem(tr("No particles are open; open some, or the shipped sample."))
             return
+        if under_way := self._under_way():
+            self._context.toast.problem(under_way)
+            return
         folder = self._folder / "datasets" / "open-particles"
         options = DatasetOptions(name=N_("open particles"), preset=session.choices.preset, overwrite=True)
         job = Job(build_dataset_folder, (particles, session.choices.coarsening_request, folder, options))
-        self._context.start(
-            tr("Building a dataset"), job, lambda built: self.setup.set_dataset(built.folder), queue=BUILD
+        self.building.start(
+            tr("Building a dataset"),
+            job,
+            lambda built: self.setup.set_dataset(built.folder),
+            tr(BUILDING),
         )
+
+    def _under_way(self) -> str:
+        """What the card shows and nothing else may take the place of; empty for nothing."""
+        if self.run.running:
+            return tr("A run is under way: stop it first.")
+        return tr(BUILDING) if self.building.running else ""
 
     def run_or_build(self) -> None:
         """What the button of the card starts: the test, or a dataset of the open particles for it."""
@@ -254,9 +269,9 @@ class ReposePage(PageWidget):
 
     def run_test(self) -> None:
         dataset = self.setup.dataset
-        if dataset is None or self.run.running:
+        if (under_way := self._under_way()) or dataset is None:
             note = tr("There is no dataset yet: open or build one first.")
-            self._context.toast.problem(note if dataset is None else tr("A run is under way: stop it first."))
+            self._context.toast.problem(under_way or note)
             return
         try:
             request = self.setup.request()
@@ -369,7 +384,7 @@ class ReposePage(PageWidget):
 
     def _ask_preview(self) -> None:
         self._prepared = None
-        if not self.run.running and self.setup.dataset is not None:
+        if not self._under_way() and self.setup.dataset is not None:
             self._show_nothing(tr("Drawing particles …"))
         self._offer_run()
         self._later.start()
@@ -404,7 +419,7 @@ class ReposePage(PageWidget):
     def _refuse(self, problem: str) -> None:
         """Show why the case of the set-up cannot be run."""
         self.setup.show_consequences([], problem)
-        if not self.run.running:
+        if not self._under_way():
             self._show_nothing(translate(problem), ResultState.FAILED)
         self._offer_run()
 
@@ -421,7 +436,7 @@ class ReposePage(PageWidget):
         self._offer_run()
         scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
         self._show_limits(CaseScale(len(prepared), report.diameters_across, report.coarse_graining))
-        if self.run.running:
+        if self._under_way():
             self._live_scene = self._live_scene or scene
             return
         self._live_scene = scene
@@ -482,7 +497,7 @@ class ReposePage(PageWidget):
         self.setup.set_fillings([run.folder for run in runs if run.document["state"] == "finished"])
 
     def _show_study_run(self, run: ReposeStudyRun) -> None:
-        if not self.run.running:
+        if not self._under_way():
             self._show_run(self.studies.summary(run))
 
     def _show_run(self, run: RunSummary) -> None:
