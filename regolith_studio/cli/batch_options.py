@@ -112,9 +112,8 @@ class BatchOptions:
         recipe = Recipe.from_choices(choices, [entry], outputs)
         with chosen_executor(self.runner, jobs, self.address, self.tls) as executor:
             done = run_with_progress(run_recipe(recipe, Path(), output, executor, self.resume), logged=True)
-        print_notes(done.notes)
-        more = len(done.problems) - _MOST_LINES
-        print_errors(done.problems[:_MOST_LINES] + ([f"{more:,} more in failed.csv."] if more > 0 else []))
+        print_first(done.notes, "more notes")
+        print_first(done.problems, "more in failed.csv")
         if json:
             counts = {"particles": done.tally.n_read, "failed": len(done.problems)}
             lists = {"problems": done.problems, "notes": done.notes}
@@ -125,10 +124,10 @@ class BatchOptions:
         raise typer.Exit(1 if done.problems else 0)
 
 
-def print_notes(notes: Sequence[str]) -> None:
-    """The first of many notes, and how many more there are."""
-    more = len(notes) - _MOST_LINES
-    print_errors([*notes[:_MOST_LINES], *([f"{more:,} more notes."] if more > 0 else [])])
+def print_first(sentences: Sequence[str], rest: str) -> None:
+    """The first of many notes or problems, and how many more there are: `rest` says where or what."""
+    more = len(sentences) - _MOST_LINES
+    print_errors([*sentences[:_MOST_LINES], *([f"{more:,} {rest}."] if more > 0 else [])])
 
 
 def check_fits_memory(paths: Sequence[Path]) -> None:

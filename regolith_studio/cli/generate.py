@@ -320,7 +320,7 @@ def match(
     seed: Seed = 0,
 ) -> None:
     """Say how near simulants are to a soil, and which mixture of them is nearest, in grams."""
-    from regolith_studio.cli.batch_options import print_notes
+    from regolith_studio.cli.batch_options import print_first
     from regolith_studio.jobs.matching_jobs import MatchRequest, match_materials
     from regolith_studio.readers.settings import unit_factor
     from regolith_studio.steps import result_of
@@ -334,11 +334,13 @@ def match(
     table = found.match.table(mass)
     if output is not None:
         result_of(found.written(output, mass))
-    print_notes(found.notes)
-    print_errors(problem.with_path for problem in found.problems)
+    problems = [problem.with_path for problem in found.problems]
+    print_first(found.notes, "more notes")
+    print_first(problems, "more problems, all with --json")
     if json:
         notes = (*found.match.notes, *found.notes)
-        print_json({"target": target, "materials": table.records, "notes": notes})
+        lists = {"problems": problems, "notes": notes}
+        print_json({"target": target, "materials": table.records, **lists})
     else:
         print_table(table)
         typer.echo(" ".join((f"Nearest by itself: {found.match.nearest.name}.", *table.notes)))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chosen_executor, print_notes
+from regolith_studio.cli.batch_options import Address, Resume, Runner, Tls, chosen_executor, print_first
 from regolith_studio.cli.generate import write_particles
 from regolith_studio.cli.offscreen_process import draw_in_process, draw_three_views
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed, option_of
@@ -62,8 +62,8 @@ def run(
         done = run_with_progress(
             run_recipe(wish, recipe.parent, output, executor, resume, chunk), logged=True
         )
-    print_notes(done.notes)
-    print_errors(done.problems)
+    print_first(done.notes, "more notes")
+    print_first(done.problems, "more problems: failed.csv has those of particles, --json all")
     if json:
         lists = {"files": done.files, "problems": done.problems, "notes": done.notes}
         print_json({"folder": str(output), **lists})

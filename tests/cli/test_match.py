@@ -55,11 +55,19 @@ def test_that_what_a_table_or_an_archive_lacks_is_said(command, tables, grains, 
     assert "fine.csv: Left out 1 row without positive numbers" in result.err
     with zipfile.ZipFile(tmp_path / "few.zip", "w") as archive:
         archive.write(grains / "grain-a.stl", "75m/a.stl")
-        archive.writestr("75m/b.stl", b"")
+        for number in range(25):
+            archive.writestr(f"75m/b{number}.stl", b"")
+    with zipfile.ZipFile(tmp_path / "both.zip", "w") as archive:
+        for number in range(25):
+            archive.writestr(f"75m/b{number}.stl", b"")
+            archive.write(grains / f"grain-{'abc'[number % 3]}.stl", f"75m/a{number}.stl")
     few = command("match", tables[0], tmp_path / "few.zip")
     assert (few.code, few.err.count("\n")) == (1, 1)
-    assert "few/75m has 1 particle; a comparison needs at least 20. 1 not read, the first:" in few.err
-    assert "75m/b.stl is empty" in few.err
+    assert "few/75m has 1 particle; a comparison needs at least 20. 25 not read, the first:" in few.err
+    assert "75m/b0.stl is empty" in few.err
+    many = command("match", tables[0], tables[1], tmp_path / "both.zip", "--json")
+    assert (many.code, many.err.count("\n"), len(many.json["problems"])) == (1, 22, 25)
+    assert many.err.endswith("5 more problems, all with --json.\n")
 
 
 def test_that_what_is_no_material_is_one_sentence(command, tables, tmp_path):

@@ -47,7 +47,7 @@ def _declared(data: bytes) -> int:
 def _parse_binary(data: bytes) -> ParsedMesh:
     if len(data) < HEADER:
         raise FileError(
-            f"is too short for an STL: it has {len(data)} bytes, and the header alone takes {HEADER}."
+            f"is too short for an STL: it has {plural(len(data), 'byte')}, and its header alone has {HEADER}."
         )
     declared, held = _declared(data), (len(data) - HEADER) // RECORD.itemsize
     if declared > held:
