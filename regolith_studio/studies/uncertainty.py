@@ -36,8 +36,8 @@ EVALUATION = "evaluation"
 """Key of the step whose heaps are those of the present settings."""
 CONFIDENCE = 0.95
 N_BOOTSTRAP = 500
-MAX_HEAPS = 10_000
-"""Numbers of heaps beyond are stated as more than this."""
+MAX_PAIRS = 10_000
+"""Numbers of pairs of heaps beyond are stated as more than this."""
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,8 @@ class AngleEffect:
       the standard deviation that it adds.
     - ``n``: pairs of heaps.
     - ``decided``: whether the interval excludes 0.
-    - ``heaps_needed``: pairs that would decide it if it is as large as it seems; none if it is decided.
+    - ``heaps_needed``: pairs that would decide it if it is as large as it seems; ``None`` if it is decided,
+      or if the heaps are those of the present settings.
     """
 
     step: ChainStep
@@ -387,8 +388,8 @@ def _difference(step: ChainStep, level: str, pairs: FloatArray) -> AngleEffect:
 
 def _effect(step: ChainStep, level: str, change: float, n: int, half: Callable[[int], float]) -> AngleEffect:
     """``half``: half width of the interval of so many pairs."""
-    decided = abs(change) > half(n)
-    needed = None if decided else _first(lambda count: half(count) < abs(change), n)
+    decided, same_heaps = abs(change) > half(n), half(n) == 0.0
+    needed = None if decided or same_heaps else _first(lambda count: half(count) < abs(change), n)
     return AngleEffect(step, level, change, change - half(n), change + half(n), n, decided, needed)
 
 
@@ -414,10 +415,10 @@ def _added_spread(
 
 
 def _first(enough: Any, n: int) -> int:
-    """The first number of pairs that suffices, in steps of a twentieth; at most :data:`MAX_HEAPS` + 1."""
-    while n <= MAX_HEAPS and not enough(n):
+    """The first number of pairs that suffices, in steps of a twentieth; at most :data:`MAX_PAIRS` + 1."""
+    while n <= MAX_PAIRS and not enough(n):
         n += max(1, n // 20)
-    return min(n, MAX_HEAPS + 1)
+    return min(n, MAX_PAIRS + 1)
 
 
 @dataclass(frozen=True, eq=False)

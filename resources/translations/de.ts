@@ -7952,6 +7952,10 @@
         <translation>Modell</translation>
     </message>
     <message>
+        <source>more than {count} heaps would decide</source>
+        <translation>mehr als {count} Haufen würden entscheiden</translation>
+    </message>
+    <message>
         <source>n = {facets}</source>
         <translation>n = {facets}</translation>
     </message>
@@ -8478,6 +8482,10 @@
     <message>
         <source>the polyhedra imitate the surfaces themselves</source>
         <translation>die Polyeder bilden die Oberflächen selbst nach</translation>
+    </message>
+    <message>
+        <source>the same heaps</source>
+        <translation>dieselben Haufen</translation>
     </message>
     <message>
         <source>to</source>

@@ -132,6 +132,7 @@ def test_that_a_level_that_scatters_more_than_all_others_has_the_interval_of_its
     known = ttest_rel(angles[6], angles[0]).confidence_interval()
     assert (wide.low, wide.high) == pytest.approx((known.low, known.high))
     assert (effects[2].low, effects[2].high) == (0.0, 0.0)
+    assert (effects[2].decided, effects[2].heaps_needed) == (False, None)  # no number of heaps would
     halves = {round(each.high - each.change, 9) for k, each in enumerate(effects) if k != 2}
     squares = angles[[0, 1, 2, 4, 5]]
     squares = squares - squares.mean(axis=0) - squares.mean(axis=1, keepdims=True) + squares.mean()

@@ -18,7 +18,8 @@ from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import best_row, sufficient_facets
-from regolith_studio.studies.uncertainty import OUTPUTS
+from regolith_studio.studies.uncertainty import OUTPUTS, AngleBudget, ChainStep
+from regolith_studio.ui.pages.studies.budget import _angle_rows
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.result_card import ResultRecord, ResultState
 from regolith_studio.ui.theme import DARK
@@ -306,6 +307,22 @@ def test_that_a_budget_of_uncertainty_is_made_in_a_folder_and_marked_when_choice
     assert (panel.table.rows.item(1, 0).text(), share) == ("Number of facets", 0.0)
     window.session.choose(n_facets=20)
     wait(lambda: panel.card.record.state is ResultState.STALE)
+
+
+def test_that_a_row_says_how_many_heaps_would_decide_a_change():
+    nominal, shifts = np.array([30.0, 31.0, 29.0, 30.5]), np.array([1.0, -1.0, 1.0, -1.0])
+    changed = {
+        "large": nominal + 9.0 + 0.1 * shifts,
+        "same": nominal,
+        "no change": nominal + shifts,
+        "small": nominal + 0.05 + shifts,
+    }
+    said = []
+    for level, angles in changed.items():
+        step = ChainStep("kept", "Kept", ("as set", level))
+        said.append(_angle_rows(AngleBudget((step,), nominal, {("kept", level): angles}))[0][-1])
+    assert said[:3] == ["99", "the same heaps", "more than 10,000 heaps would decide"]
+    assert re.fullmatch(r"2,[01]\d\d heaps would decide", said[3])
 
 
 def test_that_a_project_names_no_folder_in_which_a_budget_is_written(window, tmp_path):

@@ -12,7 +12,13 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.uncertainty import UncertaintyRequest, locked_uncertainty
 from regolith_studio.jobs.uncertainty_chain import Chain
 from regolith_studio.messages import N_
-from regolith_studio.studies.uncertainty import OUTPUTS, RESAMPLED, AngleBudget, UncertaintyBudget
+from regolith_studio.studies.uncertainty import (
+    MAX_PAIRS,
+    OUTPUTS,
+    RESAMPLED,
+    AngleBudget,
+    UncertaintyBudget,
+)
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import STRETCH, hbox, named
 from regolith_studio.ui.page import PageContext
@@ -182,7 +188,7 @@ def _share_rows(budget: UncertaintyBudget, number: int) -> list[Row]:
 
 
 def _angle_rows(angle: AngleBudget | None) -> list[Row]:
-    """A row for each change of a step; undecided ones have no share but the heaps that would decide."""
+    """A row for each change of a step; undecided ones have no share but the heaps that would decide them."""
     if angle is None:
         return []
     whole, variances = angle.variance, angle.step_variances()
@@ -190,11 +196,19 @@ def _angle_rows(angle: AngleBudget | None) -> list[Row]:
     for each in angle.effects:
         numbers = (number_text(value, ".1f") for value in (each.change, each.low, each.high))
         change = "{} ({} – {})".format(*numbers)
-        share = tr("{count} heaps would decide", count=each.heaps_needed or "–")
+        share = _needed(each.heaps_needed)
         if each.decided:
             share = number_text(100 * variances.get(each.step.key, 0.0) / whole, ".0f")
         rows.append((tr(each.step.label), translate(each.level), change, share))
     return rows
+
+
+def _needed(pairs: int | None) -> str:
+    if pairs is None:
+        return tr("the same heaps")
+    if pairs > MAX_PAIRS:
+        return tr("more than {count} heaps would decide", count=grouped_number(MAX_PAIRS))
+    return tr("{count} heaps would decide", count=grouped_number(pairs))
 
 
 def _percent(value: float, low: float, high: float) -> str:
