@@ -263,9 +263,9 @@ def test_that_formats_share_the_spheres_of_a_shape_and_cannot_change_them() -> N
 def test_that_one_sphere_for_a_cube_has_its_volume_and_centre_and_more_match_better() -> None:
     ball = fit_spheres(cube(), 1)
     assert ball[0] == pytest.approx([0, 0, 0, (3 / (4 * np.pi)) ** (1 / 3)], abs=5e-3)
-    errors = [sphere_fit_errors(cube(), fit_spheres(cube(), count)).jaccard for count in (1, 9, 20)]
+    errors = [sphere_fit_errors(cube(), fit_spheres(cube(), count)).jaccard for count in (1, 4, 9)]
     assert errors == sorted(errors, reverse=True)
-    assert errors[-1] < 0.15
+    assert errors[-1] < 0.2
 
 
 def test_that_the_inscribed_ball_of_a_cube_has_the_errors_of_the_formulas() -> None:

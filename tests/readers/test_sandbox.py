@@ -82,6 +82,7 @@ def test_that_a_file_that_takes_too_long_is_given_up(stl):
     sandbox.close()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGPROF"), reason="this system does not count a process's work")
 def test_that_a_file_that_keeps_the_processor_busy_is_given_up_long_before_it_is_late(stl):
     sandbox = Sandbox(seconds=60.0)

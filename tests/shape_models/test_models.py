@@ -26,7 +26,7 @@ fitted_anew = pytest.mark.parametrize(
     "key",
     [pytest.param(key, marks=pytest.mark.slow) if key == "hull_field" else key for key in sorted(MODELS)],
 )
-"""A hull field takes two seconds; its draws are tested with the others'."""
+"""A hull field takes two seconds to fit, and five to draw a chunk; its draws are tested with the others'."""
 
 
 def test_that_the_models_are_found_by_themselves() -> None:
@@ -42,7 +42,7 @@ def test_that_the_models_are_found_by_themselves() -> None:
     assert all(MODELS[key].key == key for key in MODELS)
 
 
-@keys
+@fitted_anew
 def test_that_the_first_particles_do_not_depend_on_how_many_are_drawn(
     key: str, fitted: dict[str, FittedModel]
 ) -> None:
