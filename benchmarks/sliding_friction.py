@@ -21,6 +21,7 @@ from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engines.mujoco import simulation
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.lifting_cylinder import advance_to_look
 from regolith_studio.dem.verification.bodies import cuboid
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -83,9 +84,7 @@ def slide(
     steps: dict[float, int] = {}
     turn = np.zeros(N_BOXES)
     while solver.time < DURATION:
-        step = solver.time_step()
-        count = round(0.5 / step)
-        solver.advance(step, count)
+        step, count = advance_to_look(solver)
         steps[step] = steps.get(step, 0) + count
         upright = 1.0 - 2.0 * (rows[:, 4] ** 2 + rows[:, 5] ** 2)
         turn = np.maximum(turn, np.degrees(np.arccos(np.clip(upright, -1.0, 1.0))))

@@ -381,9 +381,7 @@ def longest_phase(run: LiftingRun, phase: str) -> float:
 def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Snapshot, None, None]:
     """Step until `done` or the phase is over; `done` is asked and energies are noted once a look."""
     while run.solver.time < run.end:
-        step = run.solver.time_step()
-        count = max(1, round(LOOK / step))
-        run.solver.advance(step, count)
+        step, count = advance_to_look(run.solver)
         run.steps += count
         run.times[step] = run.times.get(step, 0.0) + count * step
         if run.phase in ("settle", "rest"):  # where no wall moves and no speed is limited
@@ -395,6 +393,14 @@ def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Sn
             yield _snapshot(run)
         if done(run):
             return
+
+
+def advance_to_look(solver: Solver) -> tuple[float, int]:
+    """Advance a solver by :data:`LOOK`; the step that it took, and how many of them."""
+    step = solver.time_step()
+    count = max(1, round(LOOK / step))
+    solver.advance(step, count)
+    return step, count
 
 
 def mean_energies(run: LiftingRun) -> tuple[float, float]:

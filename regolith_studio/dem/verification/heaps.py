@@ -20,6 +20,7 @@ from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import within_particles
 from regolith_studio.dem.lifting_cylinder import (
     LiftingRun,
+    advance_to_look,
     engine_state,
     fill_cylinder,
     lift_cylinder,
@@ -99,8 +100,7 @@ def settled_heap(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     run = (yield from runs.lifted()).run
     before, end = run.solver.points.copy(), run.solver.time + AFTER_REST
     while run.solver.time < end:
-        step = run.solver.time_step()
-        run.solver.advance(step, max(1, round(0.5 / step)))
+        advance_to_look(run.solver)
         yield
     displacements = np.linalg.norm(run.solver.points - before, axis=1)
     median, quantile = float(np.median(displacements)), float(np.quantile(displacements, QUANTILE))
@@ -325,8 +325,7 @@ def _tap(run: LiftingRun) -> None:
         solver.advance(solver.time_step(), 1)
     solver.set_gravity(np.array([0.0, 0.0, -1.0]))
     while solver.time - begun < TAP_TIME + PAUSE:
-        step = solver.time_step()
-        solver.advance(step, max(1, round(0.5 / step)))
+        advance_to_look(solver)
 
 
 def _solid_fraction(run: LiftingRun) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.engine import MASS
-from regolith_studio.dem.lifting_cylinder import Solver
+from regolith_studio.dem.lifting_cylinder import Solver, advance_to_look
 from regolith_studio.dem.verification import MeasuredLine, VerifiableEngine, timed
 from regolith_studio.dem.verification.bodies import cuboid, lowest_heights, random_polyhedron, scene
 from regolith_studio.geometry.arrays import FloatArray
@@ -170,8 +170,7 @@ def _run(solver: Solver, duration: float) -> None:
     end = solver.time + duration
     # Steps add up to the duration with rounding, after which a further step would count.
     while solver.time < end - 1e-9:
-        step = solver.time_step()
-        solver.advance(step, max(1, round(0.5 / step)))
+        advance_to_look(solver)
 
 
 def _energy_rise(solver: Solver, duration: float) -> Generator[None, None, float]:
