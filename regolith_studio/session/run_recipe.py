@@ -18,7 +18,7 @@ from typing import Any
 
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.dataset.folder_io import check_count, write_stored
-from regolith_studio.descriptors.catalogue import CHORD_KEYS, DEFAULT_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE, CHORD_KEYS, DEFAULT_KEYS
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes, write_in_stage
@@ -43,8 +43,8 @@ from regolith_studio.session.batch.inputs import BatchInputs, FileInput, read_me
 from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
 from regolith_studio.session.batch.preprocessing import PreparedInputs, clear_prepared_inputs, prepare_inputs
 from regolith_studio.session.batch.writers import (
-    ResultWriter,
     RunStatistics,
+    Write,
     check_dataset_request,
     descriptor_writer,
     export_options,
@@ -220,7 +220,7 @@ def _process_particles(run: RecipeRun, batch: Batch, executor: Executor) -> Part
         shapes=shapes,
         box_metric=run.choices.box_metric,
         fit_options=run.choices.fit_options,
-        keys=(*DEFAULT_KEYS, *CHORD_KEYS) if outputs.chords else DEFAULT_KEYS,
+        keys=_keys(run),
     )
     members = run.items.members
     yield from compile_first_for(run.choices.method if needs_polyhedra else "")
@@ -233,18 +233,24 @@ def _process_particles(run: RecipeRun, batch: Batch, executor: Executor) -> Part
     )
 
 
+def _keys(run: RecipeRun) -> tuple[str, ...]:
+    """Of the descriptors that are measured, in the order of the catalogue."""
+    wanted = {*DEFAULT_KEYS, *(CHORD_KEYS if run.recipe.outputs.chords else ())}
+    return tuple(key for key in CATALOGUE if key in wanted)
+
+
 def _write_results(run: RecipeRun, batch: Batch) -> Part:
     """Write the output files from the checkpoint."""
     outputs = run.recipe.outputs
     yield Started(N_("Writing the results"), batch.n_items)
     with contextlib.ExitStack() as stack:
-        writers: list[ResultWriter] = [
-            run.summary,
+        writers: list[Write] = [
+            run.summary.add,
             stack.enter_context(failure_writer(run.stage, run.items.problems)),
             stack.enter_context(time_writer(run.folder / JOURNAL / "times.csv")),
         ]
         if outputs.descriptors:
-            writers.append(stack.enter_context(descriptor_writer(run.stage)))
+            writers.append(stack.enter_context(descriptor_writer(run.stage, _keys(run))))
         if outputs.meshes:
             writers.append(
                 stack.enter_context(mesh_writer(run.stage / "meshes", run.choices.coarsening_request))
@@ -252,8 +258,8 @@ def _write_results(run: RecipeRun, batch: Batch) -> Part:
         if outputs.fits:
             writers.append(stack.enter_context(fit_writer(run.stage / "fit.json")))
         for record in _records(run, batch):
-            for writer in writers:
-                writer.add(record)
+            for write in writers:
+                write(record)
             yield Progress(record.index + 1, batch.n_items, record.values["name"])
     if outputs.dataset and run.recipe.representatives is None:
         _write_dataset(run, batch)

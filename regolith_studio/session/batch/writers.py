@@ -1,11 +1,11 @@
 """Writers of the files of a batch, which take the records one by one and hold only fits in memory."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import IO, Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from regolith_studio.dataset.export import ExportOptions, check_loss_accepted
 from regolith_studio.dataset.folder_io import StoredShape, dataset_hash, write_stored
 from regolith_studio.dataset.parameters import ExportSettings, RepresentativesSettings
 from regolith_studio.dataset.size_distributions import parse_sizes
-from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
@@ -71,147 +70,94 @@ def export_options(request: Exports, seed: int) -> ExportOptions:
     return ExportOptions(**settings_in(ExportSettings, request), seed=chosen).replaced(**request.settings)
 
 
-class ResultWriter(Protocol):
-    """Writes the results of a batch, record by record."""
-
-    def add(self, record: CheckpointRecord) -> None:
-        """Add the record of one particle."""
-
-
-@dataclass
-class _DescriptorWriter:
-    """``descriptors.json`` and ``descriptors.csv``; the first descriptors name the columns."""
-
-    entries: JsonListWriter
-    table: IO[bytes]
-    keys: list[str] = field(default_factory=list)
-    waiting: list[dict[str, Any]] = field(default_factory=list)
-
-    def add(self, record: CheckpointRecord) -> None:
-        entry = record.values.get("described")
-        if entry is None:
-            return
-        self.entries.add(entry)
-        self.waiting.append(entry)
-        if not self.keys and (keys := [key for key in CATALOGUE if key in entry]):
-            self.keys = keys
-            self._write([[column.header for column in table_columns(keys)]])
-        if self.keys:
-            self._flush()
-
-    def close(self) -> None:
-        if not self.keys:
-            self._write([[column.header for column in table_columns([])]])
-            self._flush()
-        self.entries.close()
-
-    def _flush(self) -> None:
-        self._write([table_row(entry, self.keys) for entry in self.waiting])
-        self.waiting.clear()
-
-    def _write(self, rows: list[list[Any]]) -> None:
-        self.table.write(csv_bytes(rows))
+Write = Callable[[CheckpointRecord], None]
+"""Writes the results of one particle."""
 
 
 @contextmanager
-def descriptor_writer(folder: Path) -> Iterator[ResultWriter]:
-    """Writes ``descriptors.json`` and ``descriptors.csv``."""
+def descriptor_writer(folder: Path, keys: Sequence[str]) -> Iterator[Write]:
+    """Writes ``descriptors.json`` and ``descriptors.csv``, with a column for each of `keys`."""
     with (
-        staged_file(folder / "descriptors.json") as entries,
+        staged_file(folder / "descriptors.json") as stream,
         staged_file(folder / "descriptors.csv") as table,
     ):
-        writer = _DescriptorWriter(JsonListWriter(entries), table)
-        yield writer
-        writer.close()
+        entries = JsonListWriter(stream)
+        table.write(csv_bytes([[column.header for column in table_columns(keys)]]))
 
+        def write(record: CheckpointRecord) -> None:
+            if (entry := record.values.get("described")) is not None:
+                entries.add(entry)
+                table.write(csv_bytes([table_row(entry, keys)]))
 
-@dataclass
-class _MeshWriter:
-    folder: Path
-    entries: JsonListWriter
-    failed: list[dict[str, str]] = field(default_factory=list)
-
-    def add(self, record: CheckpointRecord) -> None:
-        values = record.values
-        if entry := values.get("coarse"):
-            self.entries.add(entry)
-            write_in_stage(self.folder, entry["file"], record.blobs[MESH])
-            for part in entry.get("parts", ()):
-                write_in_stage(self.folder, part["file"], record.blobs[part["file"]])
-        elif reason := reason_of(record):
-            self.failed.append({"name": values["name"], "reason": reason})
+        yield write
+        entries.close()
 
 
 @contextmanager
-def mesh_writer(folder: Path, request: CoarseningRequest) -> Iterator[ResultWriter]:
+def mesh_writer(folder: Path, request: CoarseningRequest) -> Iterator[Write]:
     """Writes one STL a polyhedron, and ``coarsening.json``."""
+    failed: list[dict[str, str]] = []
     with staged_folder(folder, "coarsen") as stage, (stage / "coarsening.json").open("wb") as stream:
-        writer = _MeshWriter(stage, JsonListWriter(stream, document_head(request), "particles"))
-        yield writer
-        writer.entries.close({"failed": writer.failed})
+        entries = JsonListWriter(stream, document_head(request), "particles")
+
+        def write(record: CheckpointRecord) -> None:
+            if entry := record.values.get("coarse"):
+                entries.add(entry)
+                write_in_stage(stage, entry["file"], record.blobs[MESH])
+                for part in entry.get("parts", ()):
+                    write_in_stage(stage, part["file"], record.blobs[part["file"]])
+            elif reason := reason_of(record):
+                failed.append({"name": record.values["name"], "reason": reason})
+
+        yield write
+        entries.close({"failed": failed})
 
 
-@dataclass
-class _FitWriter:
-    origins: list[ParticleInfo] = field(default_factory=list)
-    fits: list[HarmonicFit] = field(default_factory=list)
-    failed: list[tuple[str, str]] = field(default_factory=list)
+@contextmanager
+def fit_writer(path: Path) -> Iterator[Write]:
+    """Writes the coefficients of all particles: nine kilobytes of memory each."""
+    origins: list[ParticleInfo] = []
+    fits: list[HarmonicFit] = []
+    failed: list[tuple[str, str]] = []
 
-    def add(self, record: CheckpointRecord) -> None:
+    def write(record: CheckpointRecord) -> None:
         values = record.values
         if entry := values.get("fit"):
             source = None if values["source"] is None else Source(*values["source"])
-            self.origins.append(ParticleInfo(values["name"], values["group"], source, tuple(values["notes"])))
-            self.fits.append(_fit(entry, record.blobs[COEFFICIENTS]))
+            origins.append(ParticleInfo(values["name"], values["group"], source, tuple(values["notes"])))
+            fits.append(_fit(entry, record.blobs[COEFFICIENTS]))
         elif reason := reason_of(record, "fitting"):
-            self.failed.append((values["name"], reason))
+            failed.append((values["name"], reason))
+
+    yield write
+    write_fits(path, FittedSample(tuple(origins), tuple(fits), tuple(failed)))
 
 
 @contextmanager
-def fit_writer(path: Path) -> Iterator[ResultWriter]:
-    """Writes the coefficients of all particles: nine kilobytes of memory each."""
-    writer = _FitWriter()
-    yield writer
-    write_fits(path, FittedSample(tuple(writer.origins), tuple(writer.fits), tuple(writer.failed)))
-
-
-@dataclass
-class _FailureWriter:
-    rows: list[list[str]] = field(default_factory=list)
-
-    def add(self, record: CheckpointRecord) -> None:
-        name = record.values["name"]
-        self.rows += [[name, each["stage"], each["reason"]] for each in record.values["failures"]]
-
-
-@contextmanager
-def failure_writer(folder: Path, unread: Sequence[FileProblem] = ()) -> Iterator[ResultWriter]:
+def failure_writer(folder: Path, unread: Sequence[FileProblem] = ()) -> Iterator[Write]:
     """Writes ``failed.csv`` with everything that went wrong, if anything did, and `unread` files."""
-    writer = _FailureWriter([[each.path, "reading", each.sentence] for each in unread])
-    yield writer
-    path = folder / "failed.csv"
-    if writer.rows:
-        write_bytes(path, csv_bytes([["name", "stage", "reason"], *writer.rows]))
-    else:
-        path.unlink(missing_ok=True)
+    rows = [[each.path, "reading", each.sentence] for each in unread]
 
+    def write(record: CheckpointRecord) -> None:
+        values = record.values
+        rows.extend([values["name"], each["stage"], each["reason"]] for each in values["failures"])
 
-@dataclass
-class _TimeWriter:
-    stream: IO[bytes]
-
-    def add(self, record: CheckpointRecord) -> None:
-        seconds = record.values.get("seconds", {})
-        row = [record.values["name"], *[seconds.get(stage) for stage in STAGES]]
-        self.stream.write(csv_bytes([row]))
+    yield write
+    if rows:
+        write_bytes(folder / "failed.csv", csv_bytes([["name", "stage", "reason"], *rows]))
 
 
 @contextmanager
-def time_writer(path: Path) -> Iterator[ResultWriter]:
+def time_writer(path: Path) -> Iterator[Write]:
     """Writes how long each stage took for each particle, as CSV."""
     with staged_file(path) as stream:
         stream.write(csv_bytes([["name", *[f"{stage} [s]" for stage in STAGES]]]))
-        yield _TimeWriter(stream)
+
+        def write(record: CheckpointRecord) -> None:
+            seconds = record.values.get("seconds", {})
+            stream.write(csv_bytes([[record.values["name"], *[seconds.get(stage) for stage in STAGES]]]))
+
+        yield write
 
 
 @dataclass
