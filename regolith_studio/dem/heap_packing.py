@@ -4,13 +4,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 from scipy.stats.qmc import Sobol
 
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.initial_packing import enclosing_radii
+from regolith_studio.dem.initial_packing import enclosing_radii, facet_planes
 from regolith_studio.dem.separation import separations
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
@@ -110,7 +110,7 @@ def within_particles(prepared: PreparedCase, particles: ParticleState, points: F
     if prepared.case.shapes == "spheres":
         inside[np.unique(np.concatenate([np.asarray(each, dtype=int) for each in near]))] = True
         return inside
-    planes = [[ConvexHull(part).equations for part in parts] for parts in prepared.part_vertices]
+    planes = facet_planes(prepared)
     turns = Rotation.from_quat(particles.orientations, scalar_first=True).as_matrix()
     for k, close in enumerate(near):
         index = np.asarray(close, dtype=int)

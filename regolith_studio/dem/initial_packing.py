@@ -48,7 +48,7 @@ def loose_column(prepared: PreparedCase) -> ParticleState:
     # The border of a footprint reaches two cells beyond the particle, and its centre is rounded to one.
     middle = int(np.ceil((radius + enclosing_radii(prepared).max()) / cell)) + 3
     surface = np.zeros((2 * middle + 1, 2 * middle + 1))
-    planes = _facet_planes(prepared)
+    planes = facet_planes(prepared)
     places = np.empty((len(prepared), 3))
     for k, (kind, matrix) in enumerate(zip(prepared.class_index, matrices, strict=True)):
         # Otherwise all centres would lie on the grid of the height map.
@@ -85,7 +85,7 @@ def enclosing_radii(prepared: PreparedCase) -> FloatArray:
     return np.asarray(furthest[prepared.class_index] * prepared.scales)
 
 
-def _facet_planes(prepared: PreparedCase) -> list[list[FloatArray]]:
+def facet_planes(prepared: PreparedCase) -> list[list[FloatArray]]:
     """Planes (normal, offset) of the facets of each convex part of each shape; none of spheres."""
     if prepared.case.shapes == "spheres":
         return []

@@ -24,7 +24,7 @@ from regolith_studio.dem.engines.lammps.script import (
     stiffness,
 )
 from regolith_studio.dem.initial_packing import enclosing_radii
-from regolith_studio.dem.lifting_cylinder import LiftingSettings
+from regolith_studio.dem.lifting_cylinder import LiftingSettings, Units
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
@@ -74,12 +74,10 @@ class _Run:
     energy_gain: float = 0.0
     restarts: list[float] = field(default_factory=list)
     steps: int = 0
+    units: Units = field(init=False)
 
-    @property
-    def units(self) -> tuple[float, float]:
-        """Metres and seconds of the solver's units."""
-        length = self.prepared.mean_diameter
-        return length, float(np.sqrt(length / self.prepared.case.test.gravity))
+    def __post_init__(self) -> None:
+        self.units = Units.of(self.prepared)
 
     @property
     def step_share(self) -> float:
@@ -110,9 +108,8 @@ def simulate(prepared: PreparedCase, settings: LammpsSettings) -> Generator[Snap
                 if len(run.restarts) == settings.restarts:
                     raise
                 _go_back(run, stuck=len(run.states) == known)
-    _, second = run.units
     assert run.last is not None
-    steps, simulated = run.steps + run.plan.steps, run.plan.total * second
+    steps, simulated = run.steps + run.plan.steps, run.plan.total * run.units.time
     return SimulationResult(run.last, _checks(run), steps, simulated, _notes(run))
 
 
@@ -150,7 +147,7 @@ def _notes(run: _Run) -> tuple[str, ...]:
     notes = (_fit_in_words(run.clumps), _softness_in_words(run.prepared, run.settings))
     if not run.restarts:
         return notes
-    times = ", ".join(f"{each * run.units[1]:.2f} s" for each in run.restarts)
+    times = ", ".join(f"{each * run.units.time:.2f} s" for each in run.restarts)
     return (
         *notes,
         f"Particles flew apart; the run went on from its snapshots at {times} with steps half as long each "
@@ -190,7 +187,7 @@ def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Genera
 
 
 def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
-    length, second = run.units
+    length, second = run.units.length, run.units.time
     rows = read_bodies(path)
     if np.linalg.norm(rows[:, 8:11], axis=1).max() > MAX_SPEED * np.sqrt(2.0 * run.top):
         raise FlewApartError(_flew_apart(run.step_share, "a particle is faster than any fall makes it"))
@@ -284,8 +281,7 @@ def _note_energies(run: _Run, folder: Path) -> None:
 
 def _checks(run: _Run) -> RunChecks:
     assert run.last is not None
-    length, _ = run.units
-    points = run.last.points / length
+    points = run.last.points / run.units.length
     turns = Rotation.from_quat(run.last.orientations, scalar_first=True)
     body, places, radius = run.clumps.atoms(points, turns)
     bodies, depths = _neighbours(body, places, radius)
