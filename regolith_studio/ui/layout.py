@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QBoxLayout,
     QComboBox,
@@ -195,6 +196,42 @@ def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -
     return made
 
 
+class FoldingSplitter(QSplitter):
+    """Results and their controls, below each other where they have no room side by side.
+
+    Controls in a scrolled column are shown whole where the page scrolls anyway: two scroll bars beside each
+    other would both be needed to see the last of them.
+    """
+
+    def __init__(self, results: QWidget, controls: QWidget, sizes: Sequence[int]) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
+        self._results, self._controls = results, controls
+        self.setChildrenCollapsible(False)
+        self.setHandleWidth(7)
+        for part in (results, controls):
+            self.addWidget(part)
+        self.setStretchFactor(0, 1)
+        self.setSizes(list(sizes))
+        self.setProperty(STANDARD_SIZES, list(sizes))
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as the wider part: the other one goes below it."""
+        hint = super().minimumSizeHint()
+        parts = self._results.minimumSizeHint(), self._controls.minimumSizeHint()
+        return QSize(max(part.width() for part in parts), hint.height())
+
+    def fold(self, room: QSize) -> None:
+        """Place the parts for a page that is shown in so much room."""
+        results, controls = self._results.minimumSizeHint(), self._controls.minimumSizeHint()
+        below = results.width() + self.handleWidth() + controls.width() > room.width()
+        for column in self._controls.findChildren(_Column):
+            column.set_whole(below or results.height() > room.height())
+        direction = Qt.Orientation.Vertical if below else Qt.Orientation.Horizontal
+        if direction != self.orientation():
+            self.setOrientation(direction)
+            self.setSizes(self.property(STANDARD_SIZES))
+
+
 def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
     made = splitter(Qt.Orientation.Vertical, parts, sizes)
     made.setStretchFactor(stretch, 1)
@@ -257,17 +294,34 @@ def scrolled(part: QWidget, *, whole_width: bool = False) -> QScrollArea:
 
 
 class _Column(QScrollArea):
-    """A column as wide as its content needs, in any language and font size."""
+    """A column as wide as its content needs, in any language and font size.
+
+    ``whole``: whether it is as high as its content too, because what it is in scrolls.
+    """
 
     def __init__(self, least: int) -> None:
         super().__init__()
         self._least = least
+        self.whole = False
 
     def minimumSizeHint(self) -> QSize:
         inside = self.widget()
         needed = inside.minimumSizeHint().width() if inside is not None else 0
         bar = self.verticalScrollBar().sizeHint().width()
-        return QSize(max(self._least, needed + bar), super().minimumSizeHint().height())
+        high = 0
+        if inside is not None and self.whole:
+            high = max(inside.minimumSizeHint().height(), inside.heightForWidth(self.viewport().width()))
+        return QSize(max(self._least, needed + bar), max(high, super().minimumSizeHint().height()))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self.whole and event.size().width() != event.oldSize().width():
+            self.updateGeometry()  # texts take other numbers of lines
+
+    def set_whole(self, whole: bool) -> None:
+        if whole != self.whole:
+            self.whole = whole
+            self.updateGeometry()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.LayoutRequest:

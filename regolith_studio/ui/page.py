@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QRegularExpression, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QMargins, QObject, QRegularExpression, QSize, Qt, Signal
 from PySide6.QtGui import QKeySequence, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -28,7 +28,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.keyboard import with_keys
-from regolith_studio.ui.layout import hbox, restore_borders, scrolled
+from regolith_studio.ui.layout import FoldingSplitter, hbox, restore_borders, scrolled
 from regolith_studio.ui.theme import (
     Theme,
     current_theme,
@@ -321,6 +321,23 @@ class ScrollablePage(QScrollArea):
 
     def minimumSizeHint(self) -> QSize:
         return MIN_SIZE
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        self._fold()
+        super().resizeEvent(event)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest:
+            self._fold()
+        return super().eventFilter(watched, event)
+
+    def _fold(self) -> None:
+        """Let results and controls have the room without bars, less one at the right."""
+        if (page := self.widget()) is not None:
+            bar = QMargins(0, 0, self.verticalScrollBar().sizeHint().width(), 0)
+            room = self.maximumViewportSize().shrunkBy(bar)
+            for splitter in page.findChildren(FoldingSplitter):
+                splitter.fold(room)
 
 
 class PageStack(QWidget):

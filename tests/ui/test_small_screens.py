@@ -4,6 +4,8 @@ import pytest
 from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QScrollArea, QWidget
 
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
@@ -56,6 +58,29 @@ def test_that_no_page_is_scrolled_sideways_on_a_small_screen(
             app.processEvents()
         area = window.page.parentWidget().parentWidget()
         assert area.horizontalScrollBar().maximum() == 0, key
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_that_pages_of_results_are_only_scrolled_down_in_letters_of_twice_the_size(
+    shown, preferences, app, speaking, language
+):
+    speaking(language)
+    preferences.window = preferences.window | {FONT_SIZE: 200}
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.session.adopt([Particle(f"grain-{k}", icosphere(1).moved(scale=20.0 + k)) for k in range(3)])
+    for width, height in ((960, 540), (1280, 800), (1920, 1080)):
+        window.resize(width, height)
+        for key in ("studies", "dataset", "repose", "lecture"):
+            page = window.go(key)
+            for _ in range(8):
+                app.processEvents()
+            area = page.parentWidget().parentWidget()
+            assert area.horizontalScrollBar().maximum() == 0, (key, width)
+            if key == "dataset":
+                column = page.findChild(QScrollArea, "controls").verticalScrollBar()
+                assert 0 in (column.maximum(), area.verticalScrollBar().maximum()), width
 
 
 @pytest.mark.usefixtures("usual_letters")

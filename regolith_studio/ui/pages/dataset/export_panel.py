@@ -35,7 +35,7 @@ from regolith_studio.ui.layout import Collapsible, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.fields import ElidedCheckBox, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
-from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
+from regolith_studio.ui.widgets.labels import ElidedLabel, WrappedLabel, heading, hint_label
 from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")
@@ -90,8 +90,7 @@ class ExportPanel(QWidget):
         vbox(heading(tr("4  Export to")), *formats, form, more, parent=self, spacing=4)
         self.foot = QWidget()
         """Belongs below the scrolled column: the button stays in sight however many formats there are."""
-        self.preview = hint_label()
-        self.preview.setObjectName("dataset_preview")
+        self.preview = named(WrappedLabel(), "dataset_preview", role="hint")
         self.enlarge = named(QPushButton(), "dataset_enlarge")
         self.enlarge.hide()
         vbox(self.preview, self.enlarge, self.lossy, self.export, parent=self.foot, margins=(4, 6, 12, 10))

@@ -37,13 +37,13 @@ from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import (
+    FoldingSplitter,
     equal_parts,
     framed,
     hbox,
     named,
     scrolled,
     scrolled_column,
-    side_by_side,
     stacked,
     tabs,
     vbox,
@@ -580,6 +580,6 @@ class DatasetPage(PageWidget):
         middle.setObjectName("dataset_middle")
         results = QWidget()
         vbox(self.result, (middle, 1), parent=results, margins=(10, 10, 2, 8))
-        whole = side_by_side((results, controls), (1200, 320), stretch=0)
+        whole = FoldingSplitter(results, controls, (1200, 320))
         whole.setObjectName("dataset_whole")
         hbox(whole, parent=self)

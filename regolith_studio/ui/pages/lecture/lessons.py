@@ -106,6 +106,8 @@ class PlaybackBar(StepPlayer):
         metrics, now = self.play.fontMetrics(), self.play.text()
         longest = max(metrics.horizontalAdvance(text) for text in (tr("Play"), tr("Pause")))
         self.play.setMinimumWidth(self.play.sizeHint().width() - metrics.horizontalAdvance(now) + longest)
+        for button in (self.first, self.back, self.forward):
+            button.setMinimumWidth(metrics.horizontalAdvance(button.text()) + 2 * metrics.height())
 
     def _show_position(self) -> None:
         self.clock.setText(self._words(self.step))

@@ -6,19 +6,20 @@ from typing import Any
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication, QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget
+from PySide6.QtWidgets import QPushButton, QTabWidget
 
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.layout import STRETCH, hbox, name_tabs, named, vbox
+from regolith_studio.ui.layout import hbox, name_tabs, named, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView, PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, font_share
 from regolith_studio.ui.translation import rich, tr
 from regolith_studio.ui.widgets.fields import ChoiceBox
+from regolith_studio.ui.widgets.labels import FixedHeightText, hint_label
 
 FONT_SIZE, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
 """Initial font size relative to other pages; below so many of their lines in height, a smaller one."""
@@ -55,7 +56,7 @@ class LecturePage(PageWidget):
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
         self.particle.setMinimumContentsLength(LETTERS_OF_NAME)
         self.another = named(QPushButton(tr("Another seed")), "lecture_another")
-        self.request = named(QLabel(), role="hint")
+        self.request = hint_label()
         self._head = (self.particle, self.another, self.request)
         self.tabs = named(QTabWidget(), "lecture_lessons")
         self._place()
@@ -285,4 +286,5 @@ class LecturePage(PageWidget):
         for widget, title in zip((self.annealing, self.degrees, self.field), titles, strict=True):
             self.tabs.addTab(widget, title)
         name_tabs(self.tabs)
-        vbox(hbox(*self._head, STRETCH, spacing=10), (self.tabs, 1), parent=self, margins=(10, 10, 10, 8))
+        head = hbox(self.particle, self.another, (FixedHeightText((self.request,), 1), 1), spacing=10)
+        vbox(head, (self.tabs, 1), parent=self, margins=(10, 10, 10, 8))

@@ -85,7 +85,8 @@ class LossSelector(QWidget):
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
         self.box = named(ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES), tip=tr(BOX_TIP))
-        self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
+        self.box.prefers_whole = True
+        self.box.setMinimumContentsLength(8)
         self.hint_label = named(ElidedLabel(role="hint"), "study_facets_hint")
         hbox(
             QLabel(tr("Loss functions")),
