@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QEvent, QMargins, QObject, QRegularExpression, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QMargins, QObject, QRegularExpression, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QKeySequence, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -453,7 +453,8 @@ class PageStack(QWidget):
     def _restore_borders(self, key: str) -> None:
         """Give borders their places back in a smaller font: parts that a large one has widened stay so."""
         if font_size() < self._font_sizes[key]:
-            restore_borders(self.widgets[key])
+            widget = self.widgets[key]  # whose parts ask for less room once they have taken the font
+            QTimer.singleShot(0, widget, lambda: restore_borders(widget))
         self._font_sizes[key] = font_size()
 
     def _hide_current(self) -> None:
