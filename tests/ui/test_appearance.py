@@ -40,10 +40,12 @@ from regolith_studio.ui.widgets.fields import ElidedComboBox
 
 
 @pytest.fixture
-def usual_looks():
+def usual_looks(app):
+    font = app.font()
     yield
     choose_theme("system")
     choose_font_size(None)
+    app.setFont(font)
 
 
 @pytest.mark.usefixtures("app", "usual_looks")
