@@ -208,7 +208,7 @@ def coarsened_and_drawn(window: Any, count: int) -> Growth:
 
 def samples_opened(window: Any, count: int) -> Growth:
     """Drawn particles are opened, some are looked at, and the shipped sample is opened again."""
-    from regolith_studio.ui.main_window import IDLE
+    from regolith_studio.ui.startup import IDLE
 
     page, session = window.go("model"), window.session
     session.choose(method="quadric", level=2)
