@@ -200,7 +200,9 @@ def unit_size(mesh: Mesh) -> tuple[FloatArray, IntArray]:
     """Vertices moved and scaled into the unit cube about the origin, and the faces."""
     if not len(mesh.faces):
         return mesh.vertices, mesh.faces
-    points = mesh.vertices[np.unique(mesh.faces)]
+    used = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    used[mesh.faces] = True
+    points = mesh.vertices[used]
     low, high = points.min(axis=0), points.max(axis=0)
     size = float((high - low).max())
     return (mesh.vertices - (low + high) / 2) / (size if size > 0.0 else 1.0), mesh.faces
@@ -208,10 +210,10 @@ def unit_size(mesh: Mesh) -> tuple[FloatArray, IntArray]:
 
 def degenerate(vertices: FloatArray, faces: IntArray) -> BoolArray:
     """Which triangles have no area: repeated corners, or three corners in a line."""
-    corner = vertices[faces]
-    sides = np.roll(corner, -1, axis=1) - corner
-    longest = (sides**2).sum(axis=2).max(axis=1, initial=0.0)
-    double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    a, b, c = (vertices[corner] for corner in faces.T)
+    sides = b - a, c - b, a - c
+    longest = np.maximum.reduce([(side**2).sum(axis=1) for side in sides])
+    double_area = np.linalg.norm(np.cross(sides[0], sides[1]), axis=1)
     # Twice the area is the height times the longest edge, whose square `longest` is.
     return np.asarray(double_area <= DEGENERATE_HEIGHT * longest)
 
