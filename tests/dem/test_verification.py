@@ -27,7 +27,7 @@ from regolith_studio.dem.verification.certificate import (
     measure_lines,
     verifiable_engine,
 )
-from regolith_studio.dem.verification.heaps import CLOSE, LOOSE, HeapRuns, _paired_line, platonic_solids
+from regolith_studio.dem.verification.heaps import CLOSE, LOOSE, HeapRuns, paired_line, platonic_solids
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs import repose_jobs
@@ -118,27 +118,27 @@ def test_that_energy_from_nowhere_fails() -> None:
 
 def test_that_a_difference_passes_where_its_interval_contains_zero() -> None:
     """Student's interval of 1, 2, 3, 4, 5 is 3 +- 1.963; that of -2 ... 2 is 0 +- 1.963."""
-    off = _paired_line("half_step", "", [(30.0, 30.0 + k) for k in range(1, 6)])
+    off = paired_line("half_step", [(30.0, 30.0 + k) for k in range(1, 6)])
     assert not off.passed
     assert off.value == pytest.approx(3.0)
     assert "2.0°" in off.note
-    assert _paired_line("half_step", "", [(30.0, 30.0 + k) for k in range(-2, 3)]).passed
+    assert paired_line("half_step", [(30.0, 30.0 + k) for k in range(-2, 3)]).passed
 
 
 def test_that_a_heap_without_an_angle_fails_the_line() -> None:
     pairs = [(30.0, 30.1), (30.0, 29.9), (30.0, 30.0), (30.0, float("nan"))]
-    assert not _paired_line("half_step", "", pairs).passed
+    assert not paired_line("half_step", pairs).passed
 
 
 def test_that_what_has_no_value_is_said_and_written_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     """Infinities and NaN are no JSON: a friction 20 % off, and heaps without an angle."""
-    nothing = _paired_line("half_step", "Change", [(float("nan"), 30.0)] * 5)
+    nothing = paired_line("half_step", [(float("nan"), 30.0)] * 5)
     far = measured(scenes.incline, CoulombEngine(0.8))
     document = certificate_document(Certificate("rapier", "1", (far, nothing)))
     print_json(document)
     assert [each["value"] for each in json.loads(capsys.readouterr().out)["lines"]] == [None, None]
     words = certificate_in_words(document)
-    assert "FAILED  Change: no value" in words
+    assert f"FAILED  {heaps.COMPARED['half_step']}: no value" in words
     assert "0 heaps with an angle are too few" in words
     assert "more than 2° off" in words
 

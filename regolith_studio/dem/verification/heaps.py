@@ -1,7 +1,7 @@
 """Heaps on the cylinder test: rest, contacts, threads, time step, gravity; and poured or tapped dice."""
 
 import tempfile
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -155,24 +155,25 @@ def repeats(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
 @timed
 def half_step(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle with half the time step, of the same filling."""
-    what = "Change of the angle of repose with half the time step, same fillings"
-    return _paired_line("half_step", what, (yield from runs.pairs()))
+    return paired_line("half_step", (yield from runs.pairs()))
 
 
 @timed
 def gravities(runs: HeapRuns) -> Generator[None, None, MeasuredLine]:
     """The angle under the gravity of the Moon against that of the Earth, with one step in seconds."""
     pairs = []
-    usual = runs.engine.Settings()
+    for seed, (on_earth, _) in zip(SEEDS, (yield from runs.pairs()), strict=True):
+        pairs.append((on_earth, (yield from angle_on_moon(runs.engine, seed))))
+    return paired_line("gravity", pairs)
+
+
+def angle_on_moon(engine: VerifiableEngine, seed: int) -> Generator[None, None, float]:
+    """Angle of the heap of a seed on the Moon, with the step in seconds that it has on the Earth."""
+    prepared, usual = heap_case(seed, MOON), engine.Settings()
     # Settings are in sqrt(d/g), which is longer on the Moon.
     shorter = replace(usual, time_step=usual.time_step * (MOON / EARTH) ** 0.5)
-    for seed, (on_earth, _) in zip(SEEDS, (yield from runs.pairs()), strict=True):
-        prepared = heap_case(seed, MOON)
-        run = LiftingRun(prepared, shorter, runs.engine.solver(prepared, shorter))
-        pairs.append((on_earth, _angle((yield from _turns(simulate_lifting(run))))))
-    return _paired_line(
-        "gravity", "Change of the angle of repose from 9.81 to 1.62 m/s², with one time step", pairs
-    )
+    run = LiftingRun(prepared, shorter, engine.solver(prepared, shorter))
+    return _angle((yield from _turns(simulate_lifting(run))))
 
 
 def step_pair(engine: VerifiableEngine, seed: int) -> Generator[None, None, AnglePair]:
@@ -209,7 +210,13 @@ def _angle(result: SimulationResult) -> float:
         return float("nan")
 
 
-def _paired_line(key: str, what: str, pairs: Sequence[AnglePair]) -> MeasuredLine:
+COMPARED = {
+    "half_step": "Change of the angle of repose with half the time step, same fillings",
+    "gravity": "Change of the angle of repose from 9.81 to 1.62 m/s², with one time step",
+}
+
+
+def paired_line(key: str, pairs: Sequence[AnglePair]) -> MeasuredLine:
     """The mean difference of pairs of angles with Student's interval; it passes if that contains zero."""
     measured = np.array([pair for pair in pairs if np.isfinite(pair).all()]).reshape(-1, 2)
     differences = measured[:, 1] - measured[:, 0]
@@ -221,7 +228,7 @@ def _paired_line(key: str, what: str, pairs: Sequence[AnglePair]) -> MeasuredLin
         note = f"± {half:.1f}° from {n} heaps"
     return MeasuredLine(
         key=key,
-        what=what,
+        what=COMPARED[key],
         value=mean,
         unit="°",
         band="its 95 % interval contains 0",
@@ -267,24 +274,29 @@ def platonic_solids() -> dict[str, FloatArray]:
 @timed
 def loose_dice(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
     """Solid fractions of dice that have settled with all of their friction."""
-    fractions = {}
-    for name, vertices in platonic_solids().items():
-        run = yield from _settled(engine, vertices)
-        fractions[name] = _solid_fraction(run)
-    return _line("loose_dice", "Solid fraction of poured Platonic dice, largest deviation", fractions, LOOSE)
+    return (yield from _dice(engine, "loose_dice"))
 
 
 @timed
 def tapped_dice(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
     """Solid fractions of dice after they were tapped."""
+    return (yield from _dice(engine, "tapped_dice"))
+
+
+def _dice(engine: VerifiableEngine, key: str) -> Generator[None, None, MeasuredLine]:
     fractions = {}
     for name, vertices in platonic_solids().items():
-        run = yield from _settled(engine, vertices)
-        for _ in range(N_TAPS):
-            _tap(run)
-            yield
-        fractions[name] = _solid_fraction(run)
-    return _line("tapped_dice", "Solid fraction of tapped Platonic dice, largest deviation", fractions, CLOSE)
+        fractions[name] = yield from dice_fraction(engine, vertices, DICE[key][1])
+    return dice_line(key, fractions)
+
+
+def dice_fraction(engine: VerifiableEngine, vertices: FloatArray, taps: int) -> Generator[None, None, float]:
+    """Solid fraction of dice that have settled with all of their friction, and were tapped so many times."""
+    run = yield from _settled(engine, vertices)
+    for _ in range(taps):
+        _tap(run)
+        yield
+    return _solid_fraction(run)
 
 
 def dice_case(vertices: FloatArray) -> PreparedCase:
@@ -342,7 +354,16 @@ def _solid_fraction(run: LiftingRun) -> float:
     return float(within_particles(run.prepared, particles, points).mean())
 
 
-def _line(key: str, what: str, fractions: dict[str, float], measured: dict[str, float]) -> MeasuredLine:
+DICE = {
+    "loose_dice": ("Solid fraction of poured Platonic dice, largest deviation", 0, LOOSE),
+    "tapped_dice": ("Solid fraction of tapped Platonic dice, largest deviation", N_TAPS, CLOSE),
+}
+"""By line: what is measured, number of taps, and the solid fractions of the experiment."""
+
+
+def dice_line(key: str, fractions: Mapping[str, float]) -> MeasuredLine:
+    """The largest deviation of the solid fractions, by kind of dice, from those of the experiment."""
+    what, _, measured = DICE[key]
     worst = max((fractions[name] - measured[name] for name in measured), key=abs)
     each = ", ".join(f"{name} {fractions[name]:.2f} ({value:.2f})" for name, value in measured.items())
     return MeasuredLine(
