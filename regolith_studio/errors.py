@@ -5,7 +5,6 @@ RegolithError
 │   ├── GeometryError     a mesh or half-spaces that enclose no proper volume
 │   └── FileError         a file that cannot be read, or is not what it claims to be
 ├── DatasetError          a dataset folder that is broken, or cannot be written
-│   └── SchemaVersionError    a dataset of another version of its schema
 ├── MissingRequirement    something that this machine lacks: a display, a program, memory
 └── JobCancelled          the user stopped the work
 
@@ -44,10 +43,6 @@ class FileError(InputError):
 
 class DatasetError(RegolithError):
     """A dataset folder that is broken, or cannot be written."""
-
-
-class SchemaVersionError(DatasetError):
-    """A dataset of another version of its schema than this program reads."""
 
 
 class MissingRequirement(RegolithError):

@@ -5,7 +5,6 @@ one in memory at a time; each particle can be reduced to a :class:`StoredShape` 
 """
 
 import hashlib
-import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -32,7 +31,7 @@ from regolith_studio.dataset.serialization import (
     shape_bytes,
 )
 from regolith_studio.dataset.size_distributions import normalised_shares
-from regolith_studio.errors import DatasetError, InputError, SchemaVersionError, os_error_reason
+from regolith_studio.errors import DatasetError, InputError, os_error_reason
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import Content, recover_folder, replace_folder
 from regolith_studio.io.file_names import unique_name
@@ -83,26 +82,12 @@ def read_mesh_bytes(folder: Path, file: str) -> bytes:
 
 def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
     """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
-    return _foreign(
-        folder, (mesh.file for record in document.representatives for mesh in record.mesh_records)
-    )
-
-
-def _foreign(folder: Path, meshes: Iterable[str]) -> list[str]:
+    meshes = {mesh.file for record in document.representatives for mesh in record.mesh_records}
     own = {DOCUMENT, README, "meshes", *meshes}
     present = {
         path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in IGNORED_FILES
     }
     return sorted(present - own)
-
-
-def _texts_in(content: object) -> Iterator[str]:
-    """All texts of a JSON value; names of files are among them in every version of the schema."""
-    if isinstance(content, str):
-        yield content
-    elif isinstance(content, list | dict):
-        for each in content.values() if isinstance(content, dict) else content:
-            yield from _texts_in(each)
 
 
 def real_path(path: Path | str) -> Path:
@@ -140,8 +125,6 @@ def read_dataset(folder: Path | str) -> Dataset:
 def check_replaceable(target: Path, overwrite: bool) -> None:
     """Check that a folder may be replaced by a dataset.
 
-    A dataset of another version of the schema may be replaced like one of the present version.
-
     Raises DatasetError if it holds anything else than a dataset, or a dataset that must not be replaced.
     """
     if not target.exists():
@@ -150,12 +133,8 @@ def check_replaceable(target: Path, overwrite: bool) -> None:
         raise DatasetError(f"{target} is a file; a dataset is written into a folder.")
     if not any(target.iterdir()):
         return
-    version = ""
     try:
         foreign = foreign_files(target, read_document(target))
-    except SchemaVersionError:
-        version = " of another version of the program"
-        foreign = _foreign(target, _texts_in(json.loads(_read(target / DOCUMENT, MAX_DOCUMENT_BYTES))))
     except DatasetError as error:
         raise DatasetError(
             f"{target} is not empty and contains no dataset; choose another folder."
@@ -165,7 +144,7 @@ def check_replaceable(target: Path, overwrite: bool) -> None:
             f"{target} also holds files that are not the dataset's ({foreign[0]}); nothing was overwritten."
         )
     if not overwrite:
-        raise DatasetError(f"{target} holds a dataset{version} already; nothing was overwritten.")
+        raise DatasetError(f"{target} holds a dataset already; nothing was overwritten.")
 
 
 README_TEMPLATE = """\

@@ -19,7 +19,6 @@ from regolith_studio.errors import (
     DatasetError,
     FileError,
     RegolithError,
-    SchemaVersionError,
     format_validation_error,
 )
 from regolith_studio.geometry.arrays import FloatArray
@@ -81,8 +80,7 @@ def head_document(name: str, weighting: Weighting, provenance: Provenance) -> di
 def parsed_document(text: str, where: str) -> DatasetDocument:
     """The checked content of a ``dataset.json``.
 
-    Raises SchemaVersionError if it is of another version of the schema. Raises DatasetError naming the first
-    entry that violates the schema.
+    Raises DatasetError if it is of another version of the schema, or naming the first entry that violates it.
     """
     try:
         content = parse_strict_json(text, where)
@@ -91,7 +89,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise DatasetError(f"{where} is not a dataset of Regolith Studio: its format is not {FORMAT!r}.")
     if content.get("schema_version") != SCHEMA_VERSION:
-        raise SchemaVersionError(
+        raise DatasetError(
             f"{where} has the schema version {content.get('schema_version')!r}, but this program reads only "
             f"version {SCHEMA_VERSION}; build the dataset again."
         )

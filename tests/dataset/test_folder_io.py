@@ -113,20 +113,6 @@ def test_that_files_are_named_after_particles_whatever_their_names_hold(tmp_path
     assert [path.name for path in (folder / "meshes").iterdir()] == ["Körnung 3_a.stl"]
 
 
-def test_that_a_dataset_with_numbered_files_is_read_and_replaced(tmp_path: Path, make_dataset) -> None:
-    """Their names are those of an earlier program, or of another one."""
-    folder = write_dataset(tmp_path / "set", make_dataset(2))
-    text = (folder / "dataset.json").read_text(encoding="utf-8")
-    for number in range(2):
-        text = text.replace(f"meshes/grain-{number}.stl", f"meshes/particle_000{number}.stl")
-        (folder / "meshes" / f"grain-{number}.stl").rename(folder / "meshes" / f"particle_000{number}.stl")
-    (folder / "dataset.json").write_text(text, encoding="utf-8")
-    assert validate_dataset(folder) == []
-    assert len(read_dataset(folder)) == 2
-    write_dataset(folder, make_dataset(1))
-    assert [path.name for path in (folder / "meshes").iterdir()] == ["grain-0.stl"]
-
-
 def test_that_a_stranger_reads_closed_convex_meshes_of_unit_volume(tmp_path: Path, make_dataset) -> None:
     dataset = make_dataset()
     folder = write_dataset(tmp_path / "set", dataset)
@@ -138,10 +124,6 @@ def test_that_a_stranger_reads_closed_convex_meshes_of_unit_volume(tmp_path: Pat
         assert mesh.convex_hull.volume == pytest.approx(1.0, abs=1e-6)
         assert np.abs(mesh.center_mass).max() < 1e-6
         assert len(mesh.faces) == representative.shape.n_triangles
-
-
-def test_that_a_written_dataset_has_no_problems(tmp_path: Path, make_dataset) -> None:
-    assert validate_dataset(write_dataset(tmp_path / "set", make_dataset())) == []
 
 
 def test_that_an_edge_shorter_than_float32_resolves_is_no_problem(tmp_path: Path) -> None:
@@ -168,34 +150,6 @@ def test_that_a_dataset_can_be_kept_from_being_replaced(tmp_path: Path, make_dat
     before = contents(folder)
     with pytest.raises(DatasetError, match="holds a dataset already"):
         write_dataset(folder, make_dataset(first=10), overwrite=False)
-    assert contents(folder) == before
-
-
-def of_another_version(folder: Path) -> Path:
-    """Gives a dataset another version and another form, of which only the names of its meshes are left."""
-    path = folder / "dataset.json"
-    document = json.loads(path.read_text())
-    meshes = [record["mesh"]["file"] for record in document["representatives"]]
-    path.write_text(json.dumps({"format": document["format"], "schema_version": 1, "shapes": meshes}))
-    return folder
-
-
-def test_that_a_dataset_of_another_version_can_be_replaced(tmp_path: Path, make_dataset) -> None:
-    folder = of_another_version(write_dataset(tmp_path / "set", make_dataset(count=5)))
-    before = contents(folder)
-    with pytest.raises(DatasetError, match="holds a dataset of another version of the program already"):
-        write_dataset(folder, make_dataset(count=2), overwrite=False)
-    assert contents(folder) == before
-    write_dataset(folder, make_dataset(count=2))
-    assert validate_dataset(folder) == []
-
-
-def test_that_files_beside_a_dataset_of_another_version_are_kept(tmp_path: Path, make_dataset) -> None:
-    folder = of_another_version(write_dataset(tmp_path / "set", make_dataset()))
-    (folder / "meshes" / "mine.stl").write_text("mine")
-    before = contents(folder)
-    with pytest.raises(DatasetError, match=r"meshes/mine\.stl"):
-        write_dataset(folder, make_dataset())
     assert contents(folder) == before
 
 
