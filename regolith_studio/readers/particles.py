@@ -318,9 +318,12 @@ def mesh_files(
         if problems is not None:
             problems += refused
         if not in_folder:
+            above = archive_of(path)
+            inside = f" at {printable(path.relative_to(above).as_posix())[-60:]}" if above else ""
+            place = f"{'folder' if path.is_dir() else 'archive'} {display_name(above or path)}"
+            endings = ", ".join(sorted(mesh_suffixes()))
             raise FileError(
-                f"The {'folder' if path.is_dir() else 'archive'} {display_name(path)} holds no mesh file; "
-                f"meshes end in {', '.join(sorted(mesh_suffixes()))}, tables of coefficients in "
+                f"The {place} holds no mesh file{inside}; meshes end in {endings}, tables of coefficients in "
                 f"{', '.join(TABLE_SUFFIXES)}."
             )
         files += in_folder

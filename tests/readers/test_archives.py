@@ -81,7 +81,7 @@ def test_that_a_path_leads_into_an_archive(library):
     fraction = read_particles([library / "deep" / "300p.zip"])
     assert [each.group for each in fraction] == [group for group, _ in NAMES if group.startswith("deep")]
     assert read_mesh(library / "75m" / "p10.stl").source.path == str(library / "75m" / "p10.stl")
-    with pytest.raises(FileError, match="holds no mesh file"):
+    with pytest.raises(FileError, match=rf"The archive {library.name} holds no mesh file at 500p; "):
         read_particles([library / "500p"])
 
 
