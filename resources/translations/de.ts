@@ -8644,6 +8644,10 @@
         <translation>{at} von {total}</translation>
     </message>
     <message>
+        <source>{axis} = {number} of {count}</source>
+        <translation>{axis} = {number} von {count}</translation>
+    </message>
+    <message>
         <source>{column} at {row}</source>
         <translation>{column} bei {row}</translation>
     </message>

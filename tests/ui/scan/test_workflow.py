@@ -131,7 +131,13 @@ def test_that_a_click_and_the_wheel_go_through_the_slices(page, part, wait):
     assert page.slices.position[2] == 35
     top.turn(3)
     assert page.slices.position[2] == 38
-    assert "z = 39 of 70" in top.title.text()
+    assert top.title.text() == "xy, z = 39 of 70"
+    splitter, slider, title = top.parentWidget(), top.slider, top.title
+    splitter.setSizes([1, 2000, 2000])
+    wait(lambda: title.text() == "z = 39 of 70" and slider.y() >= title.height())
+    assert slider.width() > top.width() // 2, "it has a row of its own"
+    splitter.setSizes([2000, 1, 1])
+    wait(lambda: title.text() == "xy, z = 39 of 70" and slider.x() >= title.width())
 
 
 def test_that_labels_go_straight_to_particles(page, tmp_path, wait):

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QWheelEvent
-from PySide6.QtWidgets import QLabel, QSlider, QWidget
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QBoxLayout, QLabel, QSlider, QWidget
 
 from regolith_studio.imaging.volume import Box, Volume
 from regolith_studio.imaging.volume_slabs import SliceImages
@@ -21,6 +21,8 @@ from regolith_studio.ui.translation import tr
 AXES = "xyz"
 ZOOM = 1.25
 """Factor of one notch of the wheel with Ctrl."""
+MIN_SLIDER = 80
+"""Pixels beside a title for a slider with its margins."""
 _OPACITY = 105
 _TONES = ((0.75, 1.0), (0.45, 1.0), (0.95, 0.8), (0.6, 0.65))
 """Saturation and value in turn: labels that are a Fibonacci number apart have about the same hue."""
@@ -64,7 +66,7 @@ class SliceView(QWidget):
         self._volume: Volume | None = None
         self._sections: SliceImages | None = None
         self._class_colours: NDArray[np.uint8] | None = None
-        self.title = named(QLabel(), role="heading")
+        self.title, self._titles = named(QLabel(), role="heading"), ("", "")
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName(f"slice_{AXES[axis]}")
         self.slider.setAccessibleName(tr("Slice along {axis}", axis=AXES[axis]))
@@ -103,15 +105,13 @@ class SliceView(QWidget):
         number, count = position[self.axis], self._volume.shape[self.axis]
         with QSignalBlocker(self.slider):
             self.slider.setValue(number)
-        self.title.setText(
-            tr(
-                "{plane}, {axis} = {number} of {count}",
-                plane=AXES[self.across] + AXES[self.down],
-                axis=AXES[self.axis],
-                number=number + 1,
-                count=count,
-            )
+        place = {"axis": AXES[self.axis], "number": number + 1, "count": count}
+        plane = AXES[self.across] + AXES[self.down]
+        self._titles = (
+            tr("{plane}, {axis} = {number} of {count}", plane=plane, **place),
+            tr("{axis} = {number} of {count}", **place),
         )
+        self._place_title()
         picture = self._sections.picture(self.axis, number)
         whole = (self._volume.shape[self.across], self._volume.shape[self.down])
         if self._volume.kind == "labels":
@@ -232,9 +232,31 @@ class SliceView(QWidget):
         for item in (*layers, self._frame, *self._cross):
             view.addItem(item)
         self._frame.setBrush(pg.mkBrush(None))
-        vbox(
-            hbox(self.title, (self.slider, 1), margins=(4, 0, 4, 0)), (self.canvas, 1), parent=self, spacing=2
-        )
+        self._head = hbox(self.title, (self.slider, 1), margins=(4, 0, 4, 0))
+        vbox(self._head, (self.canvas, 1), parent=self, spacing=2)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._place_title()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            QTimer.singleShot(0, self, self._place_title)  # the title gets its font after this
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as the shorter title."""
+        return QSize(self._title_width(1) + 8, super().minimumSizeHint().height())
+
+    def _title_width(self, which: int) -> int:
+        return self.title.fontMetrics().horizontalAdvance(self._titles[which])
+
+    def _place_title(self) -> None:
+        """Put the slider beside the title, or below a shorter one where there is little room."""
+        beside = self._title_width(0) + MIN_SLIDER <= self.width()
+        self.title.setText(self._titles[not beside])
+        direction = QBoxLayout.Direction
+        self._head.setDirection(direction.LeftToRight if beside else direction.TopToBottom)
 
     def picked(self, point: QPointF) -> None:
         """Select the voxel at a point of the scene in micrometres."""
