@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.stats import gaussian_kde
 from skimage.measure import find_contours
 
 from regolith_studio.geometry.arrays import FloatArray
@@ -145,6 +144,8 @@ def pair_density(table: FloatArray, x: FloatArray, y: FloatArray) -> tuple[Float
 
     Scott's bandwidth n^(-1/6) times the covariance.
     """
+    from scipy.stats import gaussian_kde  # .6 s, which each worker of a batch would wait for
+
     few = table[:: max(1, len(table) // MAX_FOR_DENSITY)].T
     density = gaussian_kde(few)
     values = density(np.stack(np.meshgrid(x, y)).reshape(2, -1)).reshape(GRID, GRID)

@@ -61,6 +61,15 @@ def test_that_describe_imports_no_more_than_it_computes_with(grains: Path) -> No
     assert not heavy & set(modules)
 
 
+def test_that_a_worker_of_a_batch_imports_no_more_than_it_computes_with() -> None:
+    code = "import sys, regolith_studio.session.batch.particle_task; print(*sys.modules)"
+    modules = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    heavy = {"scipy.stats", "scipy.signal", "matplotlib", "trimesh", "pyshtools", "distributed"}
+    assert not heavy & set(modules.stdout.split())
+
+
 def test_that_the_package_itself_imports_nothing_heavy() -> None:
     code = "import sys, regolith_studio; print(*sys.modules); assert 'describe' in dir(regolith_studio)"
     result = subprocess.run(

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage, signal
+from scipy import ndimage
 from skimage import filters
 
 from regolith_studio.errors import InputError
@@ -140,6 +140,8 @@ def hidden_class(
     An automatic threshold that parts the brightest grains from all others leaves dim ones below it: then
     these voxels have two peaks in the histogram, of which the one towards the level is that of grains.
     """
+    from scipy.signal import find_peaks  # .8 s, which each worker of a batch would wait for
+
     if not settings.is_automatic:
         return None
     centres, counts = seen.centres, ndimage.gaussian_filter1d(seen.counts.astype(np.float64), _PEAK_WIDTH)
@@ -149,7 +151,7 @@ def hidden_class(
     if settings.dark:
         centres, counts = centres[::-1], counts[::-1]
     # Padded, since a peak at the border of the range counts too.
-    peaks, _ = signal.find_peaks(np.concatenate([[0.0], counts, [0.0]]))
+    peaks, _ = find_peaks(np.concatenate([[0.0], counts, [0.0]]))
     for last in reversed(peaks - 1):
         first = int(counts[: last + 1].argmax())
         gap = first + int(counts[first : last + 1].argmin())
