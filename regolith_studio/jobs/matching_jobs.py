@@ -97,15 +97,16 @@ def match_materials(
     )
     problems: list[FileProblem] = []
     notes: list[str] = []
+    sources = {name: _source(name, request, problems, notes) for name in names}  # before the long work
     with open_executor(workers) as executor:
         if isinstance(target, str):
-            groups = yield from _measured(target, keys, request, executor, problems, notes)
+            groups = yield from _measured(target, sources[target], keys, request, executor, problems)
             soil = ComparedMaterial(Path(target).name, _joined(list(groups.values())))
         else:
             soil = ComparedMaterial("sample", (yield from _measured_particles(target, keys, request)))
         parts: list[ComparedMaterial] = []
         for name in candidates:
-            measured = yield from _measured(name, keys, request, executor, problems, notes)
+            measured = yield from _measured(name, sources[name], keys, request, executor, problems)
             title = Path(name).name.removesuffix(".zip")
             for group, columns in measured.items():
                 inner = group if group not in ("", title) else ""
@@ -122,28 +123,45 @@ def match_materials(
 _Columns = Mapping[str, np.ndarray]
 
 
-def _measured(
-    name: str,
-    keys: tuple[str, ...],
-    request: MatchRequest,
-    executor: Executor,
-    problems: list[FileProblem],
-    notes: list[str],
-) -> Steps:
-    """Columns of each group of what a name stands for."""
+def _source(
+    name: str, request: MatchRequest, problems: list[FileProblem], notes: list[str]
+) -> _Columns | list[MeshFile] | None:
+    """What a name stands for: the columns of a table, files of meshes, or none for a card.
+
+    Raises FileError or InputError if it is a table of something else, or holds no mesh.
+    """
     path = Path(name)
     if name in materials() and not path.exists():
-        yield Started(N_("Drawing"), N_DRAWN)
-        draws = materials()[name].model().draw(min(N_DRAWN, request.most), request.seed)
-        return {"": _columns(descriptors_of(draws, keys), keys)}
+        return None
     if path.suffix.lower() in SUFFIXES:
         table = read_shape_table(path, request.unit)
         notes += [f"{path.name}: {note}" for note in table.notes]
-        return {"": table.columns}
+        return table.columns
     found: list[FileProblem] = []
     files = _chosen(find_files([path], found), request)
     if not files:
         raise FileError(found[0].sentence if found else f"{path.name} holds no mesh.")
+    problems += found
+    return files
+
+
+def _measured(
+    name: str,
+    source: _Columns | list[MeshFile] | None,
+    keys: tuple[str, ...],
+    request: MatchRequest,
+    executor: Executor,
+    problems: list[FileProblem],
+) -> Steps:
+    """Columns of each group of what a name stands for."""
+    if source is None:
+        yield Started(N_("Drawing"), N_DRAWN)
+        draws = materials()[name].model().draw(min(N_DRAWN, request.most), request.seed)
+        return {"": _columns(descriptors_of(draws, keys), keys)}
+    if isinstance(source, Mapping):
+        return {"": source}
+    files = source
+    found: list[FileProblem] = []
     yield Started(N_("Measuring"), len(files))
     jobs = [Job(_measure_file, (file, request.unit, keys)) for file in files]
     results = yield from executor.run_all(jobs, [file.path.name for file in files])
