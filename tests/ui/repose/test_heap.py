@@ -18,7 +18,7 @@ from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import orbited
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.repose.heap import MANY_DISCS, drawn_discs, particle_text
-from regolith_studio.ui.pages.repose.player import PositionsDialog, RunPlayer
+from regolith_studio.ui.pages.repose.player import BALLS, PositionsDialog, RunPlayer
 from tests.ui.repose.conftest import import_positions, pile_of
 
 
@@ -196,8 +196,7 @@ def test_that_a_large_heap_is_drawn_coarsely_while_the_view_turns(page, monkeypa
         actors = page.player.frame.view._plotter.actors
         return [name for name in ("heap", "coarse_heap") if name in actors and actors[name].GetVisibility()]
 
-    ball = ((page.player_ball(),),)
-    page.player.set_scene(ball, False, LiftingCylinderTest())
+    page.player.set_scene(BALLS, False, LiftingCylinderTest())
     page.player.show_moment(pile_of(30.0), "heap")
     turned = orbited(page.player.frame.view.pose, 0.1, 0.0)
     page.player.frame.view._move(turned)

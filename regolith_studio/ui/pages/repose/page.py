@@ -1,24 +1,20 @@
 """Page "Angle of repose": the angle, what limits it, section, set-up, runs, study, calibration, player."""
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from platformdirs import user_data_path
-from pydantic import TypeAdapter, ValidationError
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFileDialog
 
-from regolith_studio.dataset.folder_io import DOCUMENT as DATASET
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase, scaling_report, with_number
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import (
-    DOCUMENT,
     FINAL,
     RunSummary,
     find_runs,
@@ -28,7 +24,7 @@ from regolith_studio.dem.run_io import (
     snapshot_files,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
-from regolith_studio.errors import RegolithError, format_validation_error
+from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Job
@@ -56,13 +52,22 @@ from regolith_studio.ui.pages.repose.heap import (
     scale_of_run,
 )
 from regolith_studio.ui.pages.repose.player import (
+    BALLS,
     ImportedHeap,
     RunPlayer,
     choose_positions,
     export_measurement,
     read_pile,
+    restored_heap,
 )
-from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
+from regolith_studio.ui.pages.repose.runs import (
+    RunsPanel,
+    checks_text,
+    hash_of_run,
+    new_folder,
+    time_note,
+    time_written,
+)
 from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.translation import tr, translate
@@ -159,7 +164,7 @@ class ReposePage(PageWidget):
 
     def state(self) -> dict[str, Any]:
         shown = self._shown_run
-        run = {"folder": str(shown), "sha256": _hash_of_run(shown)} if shown else None
+        run = {"folder": str(shown), "sha256": hash_of_run(shown)} if shown else None
         followed = self._followed and str(self._followed[0])
         return self.settings() | {
             "shown": run,
@@ -173,7 +178,7 @@ class ReposePage(PageWidget):
             if isinstance(state.get(name), Mapping):
                 panel.restore(state[name])
         if isinstance(followed := state.get("followed"), str):  # which is not made anew by being opened
-            self._followed = (Path(followed), _time_of(Path(followed)))
+            self._followed = (Path(followed), time_written(Path(followed)))
         if state.get("calibrated") is True:
             self.calibrations.show_kept()
         if isinstance(shown := state.get("shown"), Mapping):
@@ -188,7 +193,7 @@ class ReposePage(PageWidget):
         except RegolithError as error:
             self._show_nothing(str(error), ResultState.FAILED)
             return
-        if _hash_of_run(folder) != sha256:
+        if hash_of_run(folder) != sha256:
             note = tr(
                 "The run in {folder} is not the one that was shown when the project was saved.", folder=folder
             )
@@ -200,11 +205,7 @@ class ReposePage(PageWidget):
     def _restore_imported(self, state: Mapping[str, Any]) -> None:
         """Show the positions of a project, which the project names but does not hold."""
         try:
-            heap = TypeAdapter(ImportedHeap).validate_python(state)
-            pile, _ = heap.pile()
-        except ValidationError as error:
-            self._show_nothing(format_validation_error(error.errors(include_url=False)), ResultState.FAILED)
-            return
+            heap, pile = restored_heap(state)
         except RegolithError as error:
             self._show_nothing(str(error), ResultState.FAILED)
             return
@@ -288,7 +289,7 @@ class ReposePage(PageWidget):
         earlier = self.angle.record
         self._show_nothing(note)
         self.tabs.setCurrentIndex(0)
-        folder = self._new_folder(f"{dataset.name}-{request.case.n_particles}")
+        folder = new_folder(self._folder, f"{dataset.name}-{request.case.n_particles}")
         self._start_preview(dataset, request)
         self.run.start(
             tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
@@ -326,7 +327,7 @@ class ReposePage(PageWidget):
         self.runs.select(None)
         self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=name), "")
         self._notes = ()
-        self.player.set_scene(((self.player_ball(),),), True, LiftingCylinderTest())
+        self.player.set_scene(BALLS, True, LiftingCylinderTest())
         self.player.show_moment(pile, name, tr("{count:,} particles", count=len(pile)))
         self.limits.show_scale(CaseScale(len(pile)))
         self._measure(pile)
@@ -364,13 +365,6 @@ class ReposePage(PageWidget):
         self._context.remember("folder", str(folder))
         self._list_runs()
 
-    @staticmethod
-    def player_ball() -> Any:
-        """A sphere-like shape for particles of which only the size is known."""
-        from regolith_studio.geometry.sphere_points import icosphere
-
-        return icosphere(1).vertices
-
     # --- set-up and preview --------------------------------------------------------------------
 
     def _take_dataset(self) -> None:
@@ -378,7 +372,7 @@ class ReposePage(PageWidget):
         written = self._context.session.dataset_folder
         if written is None:
             return
-        last, self._followed = self._followed, (written, _time_of(written))
+        last, self._followed = self._followed, (written, time_written(written))
         if self._followed != last and not self.setup.by_hand:
             self.setup.set_dataset(written)
 
@@ -402,15 +396,11 @@ class ReposePage(PageWidget):
 
     def _start_preview(self, dataset: Path, request: ReposeRequest) -> None:
         """Draw the particles of a request: its consequences, and the shapes that a run shows."""
-
-        def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
-            self._show_preview(request, *drawn)
-
         job = Job(preview_repose, (dataset, request))
         self._context.start(
             tr("Drawing particles"),
             job,
-            show,
+            lambda drawn: self._show_preview(request, *drawn),
             failed=lambda each: self._refuse(each.sentence),
             queue=PREVIEW,
             repeats=True,
@@ -435,17 +425,13 @@ class ReposePage(PageWidget):
         self.setup.show_consequences([*map(translate, (*prepared.filling_notes, *report.sentences))])
         self._offer_run()
         scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
-        self._show_limits(CaseScale(len(prepared), report.diameters_across, report.coarse_graining))
+        scale = CaseScale(len(prepared), report.diameters_across, report.coarse_graining)
+        self.limits.show_scale(scale, self._seconds)
         if self._under_way():
             self._live_scene = self._live_scene or scene
             return
         self._live_scene = scene
-        seconds = self._seconds(len(prepared))
-        note = tr(
-            "Not run yet with these values: about {time} on one core, up to {longer} while other work runs.",
-            time=duration_text(seconds),
-            longer=duration_text(2 * seconds),
-        )
+        note = time_note(self._seconds(len(prepared)))
         self._show_nothing(note, made_from=tr("Dataset {folder}", folder=self.setup.dataset))
         self.player.set_scene(*scene)
         self.player.show_moment(
@@ -463,9 +449,6 @@ class ReposePage(PageWidget):
         assert self._prepared is not None, "it is asked of drawn particles"
         prepared, request = self._prepared
         return engine_named(request.engine).seconds(with_number(prepared, count), request.settings)
-
-    def _show_limits(self, scale: CaseScale) -> None:
-        self.limits.show_scale(scale, None if self._prepared is None else self._seconds)
 
     # --- a run ---------------------------------------------------------------------------------
 
@@ -528,7 +511,7 @@ class ReposePage(PageWidget):
             failed = ResultState.FAILED if state == "failed" else ResultState.STOPPED
             self._show_nothing(tr("This run was not finished: {state}.", state=tr(state)), failed)
         self._shown_run = run.folder
-        self._show_limits(scale_of_run(run.document))
+        self.limits.show_scale(scale_of_run(run.document), self._seconds if self._prepared else None)
 
     def _show_drum(self) -> None:
         """Show the angles of a drum beside the user's own."""
@@ -614,25 +597,3 @@ class ReposePage(PageWidget):
         self.runs.chosen.connect(self._show_run)
         self.study.chosen.connect(self._show_study_run)
         self.sections.plot.cutDragged.connect(self._take_cut)
-
-    def _new_folder(self, stem: str) -> Path:
-        number = 1
-        while (self._folder / f"{stem}-{number:03d}").exists():
-            number += 1
-        return self._folder / f"{stem}-{number:03d}"
-
-
-def _time_of(folder: Path) -> int:
-    """When the dataset in a folder was written, in nanoseconds; 0 where there is none."""
-    try:
-        return (folder / DATASET).stat().st_mtime_ns
-    except OSError:
-        return 0
-
-
-def _hash_of_run(folder: Path) -> str:
-    """Of the document of a run; empty if it cannot be read."""
-    try:
-        return hashlib.sha256((folder / DOCUMENT).read_bytes()).hexdigest()
-    except OSError:
-        return ""

@@ -1,11 +1,13 @@
 """3-D view of the particles, live or from the snapshots of a run, which it reads, with a time slider."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter, ValidationError
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import (
     QDialog,
@@ -21,8 +23,9 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.run_io import read_final_state
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.errors import FileError, RegolithError
+from regolith_studio.errors import FileError, RegolithError, format_validation_error
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.own_files import json_bytes
 from regolith_studio.messages import N_
@@ -50,6 +53,8 @@ UNITS = ("m", "mm", "um", "cm")
 """In the order in which they are suggested."""
 HEAP_WIDTHS = (5e-3, 2.0)
 """Plausible widths of a heap in metres."""
+BALLS = ((icosphere(1).vertices,),)
+"""The one shape of particles of which only the size is known."""
 
 
 class PositionsDialog(GrowingDialog):
@@ -144,6 +149,15 @@ class ImportedHeap:
         numbers = np.zeros(n, dtype=np.int64)
         state = ParticleState(read.points, diameters, still, numbers, 0.0, float("inf"), N_("imported"))
         return state, read.notes
+
+
+def restored_heap(state: Mapping[str, Any]) -> tuple[ImportedHeap, ParticleState]:
+    """The heap of a project and its particles; RegolithError if they cannot be had any more."""
+    try:
+        heap = TypeAdapter(ImportedHeap).validate_python(state)
+    except ValidationError as error:
+        raise FileError(format_validation_error(error.errors(include_url=False))) from error
+    return heap, heap.pile()[0]
 
 
 def read_pile(parent: QWidget, path: Path) -> tuple[ImportedHeap, ParticleState, tuple[str, ...]] | None:

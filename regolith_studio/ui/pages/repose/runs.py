@@ -1,5 +1,6 @@
 """Table of the runs, a plot of their angles against a varied parameter, and the texts of a result."""
 
+import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -8,7 +9,8 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.dem.run_io import RunSummary
+from regolith_studio.dataset.folder_io import DOCUMENT as DATASET
+from regolith_studio.dem.run_io import DOCUMENT, RunSummary
 from regolith_studio.messages import N_
 from regolith_studio.ui.layout import vbox
 from regolith_studio.ui.translation import localized, number_text, tr, translate
@@ -200,3 +202,36 @@ def duration_text(seconds: float) -> str:
         if seconds < 6000
         else f"{seconds / 3600:.0f} h"
     )
+
+
+def time_note(seconds: float) -> str:
+    """How long a run of the set-up would take."""
+    return tr(
+        "Not run yet with these values: about {time} on one core, up to {longer} while other work runs.",
+        time=duration_text(seconds),
+        longer=duration_text(2 * seconds),
+    )
+
+
+def new_folder(folder: Path, stem: str) -> Path:
+    """The first numbered folder of this name that is not there yet."""
+    number = 1
+    while (folder / f"{stem}-{number:03d}").exists():
+        number += 1
+    return folder / f"{stem}-{number:03d}"
+
+
+def time_written(folder: Path) -> int:
+    """When the dataset in a folder was written, in nanoseconds; 0 where there is none."""
+    try:
+        return (folder / DATASET).stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
+def hash_of_run(folder: Path) -> str:
+    """Of the document of a run; empty if it cannot be read."""
+    try:
+        return hashlib.sha256((folder / DOCUMENT).read_bytes()).hexdigest()
+    except OSError:
+        return ""
