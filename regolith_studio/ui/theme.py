@@ -227,6 +227,10 @@ QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 QToolTip {{ color: palette(text); background: palette(button); border: 1px solid palette(mid);
     padding: 4px; }}
 QMainWindow::separator {{ width: 1px; height: 1px; background: palette(mid); }}
+QProgressBar {{ background: palette(base); border: 1px solid palette(mid); border-radius: 3px;
+    text-align: center; }}
+QProgressBar::chunk {{ background: palette(midlight); }}
+QProgressBar[textVisible="false"]::chunk {{ background: palette(highlight); }}
 QSplitter::handle {{ background: transparent; }}
 QSplitter::handle:hover {{ background: palette(highlight); }}
 QStatusBar {{ border-top: 1px solid palette(mid); }}

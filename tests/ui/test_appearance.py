@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFrame,
     QLabel,
+    QProgressBar,
     QRadioButton,
     QSplitter,
     QStyle,
@@ -307,6 +308,28 @@ def test_that_a_combo_box_becomes_as_small_as_its_letters_again(shown):
     assert box.minimumSizeHint().height() > before.height()
     box.setFont(usual)
     assert box.minimumSizeHint() == before
+
+
+@pytest.mark.usefixtures("usual_looks")
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+@pytest.mark.parametrize("text", [False, True])
+def test_that_a_bar_of_unknown_length_is_not_full(app, shown, theme, text):
+    panel = shown(QWidget())
+    bar, column = QProgressBar(), QVBoxLayout(panel)
+    bar.setTextVisible(text)
+    bar.setRange(0, 0)
+    column.addWidget(bar)
+    apply_theme(app, theme, panel)
+    panel.resize(240, 50)
+    app.processEvents()
+    picture = bar.grab().toImage()
+    row = [picture.pixelColor(x, picture.height() // 2).name() for x in range(4, picture.width() - 4)]
+    filled = theme.selected if text else theme.accent
+    assert 0.2 < row.count(QColor(filled).name()) / len(row) < 0.8
+    bar.setRange(0, 4)
+    bar.setValue(4)
+    picture = bar.grab().toImage()
+    assert picture.pixelColor(picture.width() - 8, picture.height() // 2) == QColor(filled)
 
 
 @pytest.mark.usefixtures("usual_looks")
