@@ -11,6 +11,9 @@ bytes on disk; from two or more counts, what a particle costs and what the run c
 Of an archive each step is also timed by itself, in one process. The table of the guide:
 
     python -m benchmarks.scale --archive --particles 100 400 --json benchmarks/results/library.json
+
+``interrupted`` in that file was added by hand and is kept: an archive of 10,000 by the command ``run``,
+killed, resumed, and stopped before its end.
 """
 
 import argparse
@@ -33,8 +36,6 @@ import numpy as np
 
 STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
 STEPS = ("reading", "repair", "measuring", "coarsening", "writing")
-KEPT = ("particles", "jobs", "processor", "memory", "parent", "disk")
-"""What a file of results has of a run: no times by the clock, which other processes change."""
 TARGET = (10_000, 3 * 60.0)
 """Particles, and seconds on two quiet cores."""
 N_TIMED = 50
@@ -72,9 +73,11 @@ class Run:
     disk: int
 
     @property
-    def share(self) -> float:
-        """Of the cores that the run had: near 1 on a quiet machine, where the wall time counts."""
-        return self.processor / (self.wall * self.jobs)
+    def row(self) -> dict[str, float]:
+        """For a file of results: no times by the clock, which other processes change."""
+        sizes = {f"{key}_mb": round(getattr(self, key) / 1e6, 1) for key in ("memory", "parent", "disk")}
+        processor = round(self.processor, 2)
+        return {"particles": self.particles, "jobs": self.jobs, "processor": processor, **sizes}
 
 
 def measured(particles: int, jobs: int, archive: bool) -> Run:
@@ -235,8 +238,10 @@ def report(runs: Sequence[Run], steps: Mapping[str, float]) -> dict[str, Any]:
             f"{run.particles:>10,}{run.wall:>9.1f}{run.processor:>9.1f}{run.assembling:>12.2f}"
             f"{run.memory / 2**30:>7.2f}{run.parent / 1e6:>11.1f}{run.disk / 1e6:>9.1f}   {parts}"
         )
-    rows = [{key: getattr(run, key) for key in KEPT} for run in runs]
-    content: dict[str, Any] = {"runs": rows, "steps": {key: round(ms, 2) for key, ms in steps.items()}}
+    content: dict[str, Any] = {
+        "runs": [run.row for run in runs],
+        "steps": {key: round(ms, 2) for key, ms in steps.items()},
+    }
     print(", ".join(f"{step} {ms:.1f}" for step, ms in steps.items()))
     if len({run.particles for run in runs}) > 1:
         counts, costs = np.array([(run.particles, run.processor) for run in runs]).T
@@ -285,7 +290,8 @@ def main() -> None:
         print(f"{particles:,} particles: {runs[-1].wall:.0f} s", file=sys.stderr)
     content = report(runs, steps)
     if options.json:
-        options.json.write_text(json.dumps(content, indent=1) + "\n")
+        before = json.loads(options.json.read_text()) if options.json.exists() else {}
+        options.json.write_text(json.dumps({**before, **content}, indent=1) + "\n")
 
 
 if __name__ == "__main__":
