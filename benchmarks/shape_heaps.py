@@ -5,8 +5,9 @@
 The twelve shipped particles; by default 20 seeds, 1,000 particles, all shapes (names of cases with commas
 between; after @ stands another friction than 0.8), Rapier, one heap at a time. Datasets and heaps that are in
 the folder RUNS already are kept. RESULT has a row a heap, and the differences of :data:`QUESTIONS` on the
-same seeds, with the scatter of the heaps of all cases: number of pairs, difference, ends of its interval of
-95 %, and how many pairs would decide one whose interval holds 0, if it is as large as it seems.
+same seeds, of angles and of solid fractions of the fillings, with the scatter of the heaps of all cases:
+number of pairs, difference, ends of its interval of 95 %, and how many pairs would decide one whose interval
+holds 0, if it is as large as it seems.
 """
 
 import json
@@ -78,7 +79,8 @@ def main(
             study: ReposeStudy = step.value
             rows = [row(run) for run in study.runs]
             table = differences(rows)
-            content = {"engine": engine, "runs": rows, "differences": {"rows": table}}
+            fillings = {"rows": differences(rows, "solid_fraction", 4)}
+            content = {"engine": engine, "runs": rows, "differences": {"rows": table}, "fillings": fillings}
             result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     for name, numbers in table.items():
         print(name, numbers)
@@ -111,23 +113,25 @@ def row(run: ReposeStudyRun) -> dict[str, Any]:
     }
 
 
-def differences(heaps: Sequence[dict[str, Any]]) -> dict[str, list[float | int | None]]:
-    """By question: pairs of heaps, difference in degrees, ends of its interval, pairs that would decide."""
-    angles: dict[str, dict[int, float]] = {}
+def differences(
+    heaps: Sequence[dict[str, Any]], key: str = "angle_deg", digits: int = 2
+) -> dict[str, list[float | int | None]]:
+    """By question: pairs of heaps, difference, ends of its interval, pairs that would decide."""
+    values: dict[str, dict[int, float]] = {}
     for heap in heaps:
         friction = heap.get("friction", FRICTION)
         case = heap["coarsening"] + (f"@{friction}" if friction != FRICTION else "")
-        angle = heap["angle_deg"]
-        angles.setdefault(case, {})[heap["seed"]] = np.nan if angle is None else angle
-    seeds = sorted(set().union(*angles.values()))
-    table = {case: np.array([of.get(seed, np.nan) for seed in seeds]) for case, of in angles.items()}
+        value = heap[key]
+        values.setdefault(case, {})[heap["seed"]] = np.nan if value is None else value
+    seeds = sorted(set().union(*values.values()))
+    table = {case: np.array([of.get(seed, np.nan) for seed in seeds]) for case, of in values.items()}
     rows: dict[str, list[float | int | None]] = {}
     for question, (changed, base) in QUESTIONS.items():
         step = ChainStep(question, "", (base, *(case for case in table if case != base)))
         if {changed, base} <= set(table):
             budget = AngleBudget((step,), table[base], {(question, case): table[case] for case in table})
             for found in (effect for effect in budget.effects if effect.level == changed):
-                numbers = [round(each, 2) for each in (found.change, found.low, found.high)]
+                numbers = [round(each, digits) for each in (found.change, found.low, found.high)]
                 rows[question] = [found.n, *numbers, found.heaps_needed]
     return rows
 
