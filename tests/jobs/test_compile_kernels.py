@@ -151,7 +151,7 @@ def test_that_a_method_of_another_package_has_nothing_to_compile(compiler: Compi
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
+@pytest.mark.timeout(3600)
 def test_that_a_first_start_compiles_as_many_kernels_as_are_announced(tmp_path: Path) -> None:
     """The limit of what an installation compiles: a new specialisation has to be written into the table.
 
