@@ -40,8 +40,10 @@ UNUSED_DAYS = 60
 """Folders of machine code that no process has used for so long are deleted."""
 
 # Divisions by zero give infinity: a test for each would keep loops from being vectorised. No fastmath: it
-# adds up in another order on each kind of processor.
+# adds up in another order on each kind of processor. Nothing calls kernels as functions of C, for which each
+# would be compiled once more.
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": False}
+_OPTIONS |= {"no_cfunc_wrapper": True}
 _NO_COUNTING: dict[str, Any] = {"_nrt": False}
 # An option of numba without documentation. Each use of an array of a named tuple otherwise counts references
 # up and down: atomic operations that cost more than the arithmetic around them.

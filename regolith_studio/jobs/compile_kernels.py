@@ -19,10 +19,10 @@ from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
 from regolith_studio.messages import N_, Message
 
-TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 12, "exact": 118}
+TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 10, "exact": 105}
 _METHODS = (*TASKS, "compound")
 """Reading to measuring, then the methods of coarsening: each needs what is before it."""
-TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3, "compound": 63}
+TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3, "compound": 59}
 """What can be compiled, in the order in which it is needed, and the files of machine code that each adds to
 those of the tasks before it. Annealing has no kernel that the exact method does not need too. The second line
 is for single pages; compounds are last, as they take minutes and few users need them at once. What is

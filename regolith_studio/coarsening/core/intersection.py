@@ -141,7 +141,7 @@ def fill_tetrahedron(work: IntersectionWorkspace, n: int, reach: float) -> int:
         a, b, c = n + triple[0], n + triple[1], n + triple[2]
         planes[v, 0], planes[v, 1], planes[v, 2] = a, b, c
         owner[a, b] = owner[b, c] = owner[c, a] = v
-    return 4
+    return v + 1  # no constant, for which numba would compile once more what is called with it
 
 
 @kernel_noalloc

@@ -108,8 +108,9 @@ def descend(
     here, there, scratch, boxes, work, counts, residuals, frames = memory
     here.normals[:], here.offsets[:], here.tangents[:] = normals, offsets, tangents
     here.counts[N_BOXES] = 0
-    needs_box = False
-    for r in range(SHORTEST, RATIO + 1):
+    # not from False on: numba would compile all steps for that constant, too
+    needs_box = prices.low[SHORTEST] < prices.high[SHORTEST]
+    for r in range(SHORTEST + 1, RATIO + 1):
         needs_box = needs_box or prices.low[r] < prices.high[r]
     if not fill_body(here, prices.wanted, needs_box, scratch):
         return False, np.inf, np.inf, 1.0

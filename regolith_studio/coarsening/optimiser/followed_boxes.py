@@ -55,7 +55,10 @@ NO_EDGE = 1e-8
 
 
 class BoxMemory(NamedTuple):
-    """Memory of a search for n half-spaces, in the terms of :mod:`regolith_studio.geometry.minimum_box`."""
+    """Memory of a search for n half-spaces, in the terms of :mod:`regolith_studio.geometry.minimum_box`.
+
+    The coordinates of up to v vertices take 3 v numbers.
+    """
 
     points: FloatArray
     directions: FloatArray
@@ -77,7 +80,7 @@ def box_memory(n: int, n_vertices: int) -> BoxMemory:
     directions = cell_directions(n_cells(n_vertices))
     angles = np.linspace(0.0, np.pi / 2.0, QUARTER_TURNS, endpoint=False)
     return BoxMemory(
-        np.empty((3, n_vertices)),
+        np.empty(3 * n_vertices),
         directions,
         np.empty((directions.shape[1], 3)),
         np.empty((2, directions.shape[1]), np.int64),
@@ -105,7 +108,8 @@ def find_smaller_box(
     Of a convex polyhedron: vertices (v, 3), normals (n, 3), edges (from, to, facet, facet), (e, 4).
     """
     best, n, v = memory.best, len(normals), len(vertices)
-    points = memory.points[:, :v]
+    # contiguous, as in the search of a particle's box, which is else compiled once more for other arrays
+    points = memory.points[: 3 * v].reshape((3, v))
     table = SpanTable(memory.spans, int(np.sqrt(len(memory.spans) / 3.0) + 0.5))
     for i in range(v):
         for c in range(3):
