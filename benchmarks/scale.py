@@ -12,8 +12,8 @@ Of an archive each step is also timed by itself, in one process. The table of th
 
     python -m benchmarks.scale --archive --particles 100 400 --json benchmarks/results/library.json
 
-``interrupted`` in that file was added by hand and is kept: an archive of 10,000 by the command ``run``,
-killed, resumed, and stopped before its end.
+``whole`` in that file was added by hand and is kept: an archive of 10,000 by the command ``run``, killed
+once, stopped once, and resumed to its end.
 """
 
 import argparse
