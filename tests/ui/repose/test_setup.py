@@ -3,13 +3,14 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QFileDialog, QLabel
 
-from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.parameters import DRUM, ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import check_number
 from regolith_studio.dem.evaluation import EvaluationSettings
@@ -19,7 +20,10 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import repose_jobs
+from regolith_studio.jobs.dataset_jobs import DatasetBuildResult
+from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.ui.layout import Collapsible, scrolled_column
+from regolith_studio.ui.pages.repose import page as page_module
 from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -232,10 +236,18 @@ def test_that_the_open_particles_become_a_dataset(page, wait):
 
 
 @pytest.mark.usefixtures("threads")
-def test_that_the_card_says_that_a_dataset_is_being_built_and_stops_it(page, wait):
-    # Not a ball, all of whose boxes tie: the search for the least takes 5 s.
-    body = Mesh(icosphere(2).vertices * [40.0, 50.0, 70.0], icosphere(2).faces)
-    page._context.session.adopt([Particle("grain", body)])
+def test_that_the_card_says_that_a_dataset_is_being_built_and_stops_it(page, wait, dataset, monkeypatch):
+    """A build lasts until the test ends it, however fast the machine coarsens."""
+    ended = Event()
+
+    def build(*_):
+        yield Started("Coarsening", 1)
+        while not ended.wait(0.01):
+            yield Progress(0, 1, "grain")
+        return DatasetBuildResult(dataset, read_dataset(dataset), ())
+
+    monkeypatch.setattr(page_module, "build_dataset_folder", build)
+    page._context.session.adopt([Particle("ball", icosphere(2).moved(scale=40.0))])
     page.make_dataset()
     assert page.angle.record.state is ResultState.RUNNING
     assert page.angle.record.note == "A dataset of the open particles is being built."
@@ -246,7 +258,9 @@ def test_that_the_card_says_that_a_dataset_is_being_built_and_stops_it(page, wai
     page.make_dataset()
     page.make_dataset()
     assert page._context.toast.sentence.text() == page.angle.record.note, "it is built once"
+    ended.set()
     wait(lambda: page.setup.dataset is not None)
+    assert page.setup.dataset == dataset
 
 
 def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking):
