@@ -16,12 +16,13 @@ from regolith_studio.messages import N_
 from regolith_studio.session.preferences import preferences_path
 from regolith_studio.session.project import SUFFIX, Project, SessionRecipe, read_project
 from regolith_studio.session.recipe import Recipe
+from regolith_studio.session.results import Failure
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.commands import PageHistory, without
 from regolith_studio.ui.layout import named
 from regolith_studio.ui.page import PageStack
-from regolith_studio.ui.translation import inert, tr
+from regolith_studio.ui.translation import inert, tr, translate
 from regolith_studio.ui.widgets.toast import Toast
 
 
@@ -272,7 +273,7 @@ class ProjectFiles(QObject):
     def _bring_back(self, path: Path) -> bool:
         try:
             project = read_project(path)
-            project.open_in(self._session, path.parent)
+            task = project.open_in(self._session, path.parent)
         except RegolithError as error:
             self._toast.problem(str(error))
             return False
@@ -281,14 +282,18 @@ class ProjectFiles(QObject):
                 self._pages.go(key).restore(state)
         if project.page in self._pages.pages:
             self._pages.go(project.page)
-        self._go_on_later(project)
+        self._go_on_later(project, path.name, task)
         return True
 
-    def _go_on_later(self, project: Project) -> None:
-        """Put the particle back on screen as soon as it has been read, and what was made of the particles."""
+    def _go_on_later(self, project: Project, name: str, task: int) -> None:
+        """Put the particle back on screen as soon as it has been read, and what was made of the particles.
+
+        A project whose particles cannot be read is left.
+        """
+        events, awaited, reasons = self._session.events, True, [""]
 
         def go_on() -> None:
-            particles.disconnect(later)
+            stop()
             if any(entry.id == project.selected for entry in self._session.particles):
                 self._session.select(project.selected)
             for key, state in project.pages.items():
@@ -299,11 +304,49 @@ class ProjectFiles(QObject):
                 self._saved = self._state()
                 self.changed.emit()
 
-        def later() -> None:
-            QTimer.singleShot(0, self, go_on)
+        def give_up() -> None:
+            stop()
+            self._leave(name, reasons[-1])
 
-        particles = self._session.events.particles
-        particles.connect(later)
+        def stop() -> None:
+            events.particles.disconnect(later)
+            events.tasks.disconnect(follow)
+            events.failed.disconnect(note)
+
+        def later() -> None:
+            end(go_on)
+
+        def follow() -> None:
+            if all(each.id != task for each in self._session.tasks):
+                end(give_up)
+
+        def note(failure: Failure) -> None:
+            reasons.append(failure.sentence)
+
+        def end(then: Callable[[], None]) -> None:
+            nonlocal awaited
+            if awaited:
+                awaited = False
+                QTimer.singleShot(0, self, then)
+
+        events.particles.connect(later)
+        events.failed.connect(note)
+        if any(each.id == task for each in self._session.tasks):  # none is, if jobs run at once
+            events.tasks.connect(follow)
+
+    def _leave(self, name: str, reason: str) -> None:
+        """Give up the name of a project whose particles were not read: saving would lose what it names.
+
+        A copy that a crash has left is offered again by the next window.
+        """
+        self.path, self._digest, self._saved, self._restored = None, "", None, False
+        for lock in self._recovered.values():
+            lock.release()
+        self._recovered = {}
+        if reason:
+            note = tr("{name} is not open and stays as it is; move its files back to open it.", name=name)
+            self._toast.problem(f"{translate(reason)} {note}")
+        self.changed.emit()
 
     def _note_change(self) -> None:
         self._changed = True

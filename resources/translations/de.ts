@@ -1176,10 +1176,6 @@
         <translation>Coarse-Graining-Faktor</translation>
     </message>
     <message>
-        <source>Coarse-graining factor {factor}</source>
-        <translation>Vergröberungsfaktor {factor}</translation>
-    </message>
-    <message>
         <source>Coarsen the open particles first</source>
         <translation>Zuerst die geöffneten Partikel vergröbern</translation>
     </message>
@@ -2042,6 +2038,10 @@
     <message>
         <source>Export table</source>
         <translation>Tabelle exportieren</translation>
+    </message>
+    <message>
+        <source>Export with coarse graining {factor} …</source>
+        <translation>Mit Coarse-Graining {factor} exportieren …</translation>
     </message>
     <message>
         <source>Export …</source>
@@ -9050,6 +9050,10 @@
     <message>
         <source>{name} has changes that are not saved.</source>
         <translation>{name} hat Änderungen, die nicht gespeichert sind.</translation>
+    </message>
+    <message>
+        <source>{name} is not open and stays as it is; move its files back to open it.</source>
+        <translation>{name} ist nicht geöffnet und bleibt, wie es ist; zum Öffnen die Dateien an ihren Ort zurücklegen.</translation>
     </message>
     <message>
         <source>{name} only</source>

@@ -5,12 +5,15 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QMessageBox
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session import project
 from regolith_studio.session.choices import Choices
@@ -102,6 +105,54 @@ def test_that_the_next_crash_is_offered_where_the_first_is_declined(shown, prefe
     assert len(asked) == 1
     asked[0].button(QMessageBox.StandardButton.Yes).click()
     assert window.session.choices.n_facets == 11
+
+
+@pytest.fixture
+def moved(tmp_path):
+    """A project whose only mesh is no longer where it was."""
+    (tmp_path / "here").mkdir()
+    ball = icosphere(2).moved(scale=20.0)
+    (tmp_path / "here" / "grain.stl").write_bytes(stl_bytes(ball.vertices[ball.faces], "ball"))
+    session = Session(InlineRunner(), Choices(method=QUICK, level=2, n_facets=33))
+    session.open([tmp_path / "here" / "grain.stl"], "um")
+    path = tmp_path / "plain.regolith"
+    Project.of(session).save(path)
+    session.close()
+    (tmp_path / "here").rename(tmp_path / "there")
+    return path
+
+
+class LateRunner(InlineRunner):
+    """Reads particles when the event loop is idle."""
+
+    def submit(self, job, listener, queue=""):
+        if queue != "load":
+            return super().submit(job, listener, queue)
+        QTimer.singleShot(0, lambda: InlineRunner.submit(self, job, listener, queue))
+        return SimpleNamespace(cancel=lambda: None)
+
+
+def test_that_a_project_whose_files_have_moved_is_not_open_and_loses_nothing(
+    shown, preferences, moved, wait, tmp_path
+):
+    session = Session(LateRunner(), Choices(method=QUICK, level=2))
+    window = shown(MainWindow(session, preferences, "image"))
+    projects, before = window.projects, moved.read_bytes()
+    window.session.adopt([Particle("ball", icosphere(1))])
+    projects.open(moved)
+    assert projects.path == moved
+    wait(lambda: projects.path is None)
+    said = window.toast.sentence.text()
+    assert "grain.stl" in said
+    assert said.endswith("plain.regolith is not open and stays as it is; move its files back to open it.")
+    assert [each.id for each in window.session.particles] == ["ball"]
+    window.session.adopt([Particle("other", icosphere(1))])
+    assert moved.read_bytes() == before
+    (tmp_path / "there").rename(tmp_path / "here")
+    projects.open(moved)
+    wait(lambda: projects._saved is not None)
+    assert [each.id for each in window.session.particles] == ["grain"]
+    assert projects.path == moved
 
 
 def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypatch):
