@@ -172,6 +172,27 @@ def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(p
     assert "parts" not in page.gallery.shown[0].caption
 
 
+def test_that_a_format_of_convex_particles_is_refused_before_compounds_exist(chosen, tmp_path, wait) -> None:
+    chosen.targets.setValue({"targets": ["rocky", "hoomd"]})
+    assert chosen.targets.export.isEnabled()
+    chosen.session.choose(method="compound")
+    wait(lambda: not chosen.targets.export.isEnabled())
+    assert "HOOMD-blue (shape JSON) cannot hold the compounds" in chosen.targets.export.toolTip()
+    assert chosen.targets.recipe_part() is None
+    chosen.export()
+    assert chosen._dataset is None
+    assert chosen._context.toast.sentence.text() == chosen.targets.export.toolTip()
+    chosen.targets.boxes["hoomd"].setChecked(False)
+    assert chosen.targets.export.isEnabled()
+    chosen.targets.boxes["hoomd"].setChecked(True)
+    chosen.session.choose(method="quadric")
+    wait(chosen.targets.export.isEnabled)
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen._dataset is not None)
+    chosen.session.choose(method="compound")
+    wait(lambda: not chosen.targets.export.isEnabled())
+
+
 def test_that_the_rows_of_many_exports_are_as_high_as_their_buttons(page, tmp_path) -> None:
     page.exports.show_exports([ExportResult(key, tmp_path, (), "load it") for key in EXPORTERS])
     page._lower.setCurrentIndex(1)
@@ -283,7 +304,9 @@ def test_that_a_stopped_build_keeps_the_earlier_dataset(chosen, tmp_path, wait, 
 
 
 @pytest.mark.slow
-def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page, tmp_path, wait) -> None:
+def test_that_the_number_of_simulated_particles_is_stated_before_the_export(
+    page, tmp_path, wait, monkeypatch
+) -> None:
     """15 g of spheres of 22 um and 3.1 g/cm3 are 868 million; a factor of 13 leaves 395,000."""
     sphere = icosphere(3)
     radius = 11.0 / (sphere.volume / (4 / 3 * np.pi)) ** (1 / 3)
@@ -299,8 +322,13 @@ def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page
     stated = int(page.targets.preview.text().split(": ")[1].split(" ")[0].replace(",", ""))
     assert stated == pytest.approx(count, rel=1e-6)
     assert "d50 22 µm" in page.targets.preview.text()
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path / "out"))
+    assert page.targets.enlarge.text() == "Export with coarse graining 13 …"
+    assert page.targets.options().coarse_graining_factor == 1, "none is taken before it is asked for"
     page.targets.enlarge.click()
-    assert page.targets.options().coarse_graining_factor == 13
+    wait(lambda: page.exports.exports)
+    case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
+    assert case["coarse_graining_factor"] == 13
     assert "too many" not in page.targets.preview.text()
     assert page.targets.enlarge.isHidden()
 

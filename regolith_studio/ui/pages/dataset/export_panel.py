@@ -118,9 +118,8 @@ class ExportPanel(QWidget):
             found = self._fill(self.options())
             too_many = found.n_particles > MANY_PARTICLES
             lines.append(_filling_text(tr(EXPORTERS[filling[0]].label), found))
-            self.enlarge.setText(
-                tr("Coarse-graining factor {factor}", factor=number_text(found.sufficient_factor, "g"))
-            )
+            factor = number_text(found.sufficient_factor, "g")
+            self.enlarge.setText(tr("Export with coarse graining {factor} …", factor=factor))
             self._sufficient = found.sufficient_factor
         if len(filling) < len(self.chosen()) and self._fill is not None:
             count = number_text(int(self.particles.value()), ",")
@@ -132,6 +131,7 @@ class ExportPanel(QWidget):
     def _take_sufficient_factor(self) -> None:
         self.coarse_graining.setValue(self._sufficient)
         self.optionsChanged.emit()
+        self.exportRequested.emit()
 
     def chosen(self) -> tuple[str, ...]:
         return tuple(key for key, box in self.boxes.items() if box.isChecked())
@@ -150,7 +150,7 @@ class ExportPanel(QWidget):
         return self.lossy.isChecked()
 
     def set_ready(self, reason: str, compounds: bool = False) -> None:
-        """Set why nothing can be exported, or nothing, and whether the dataset holds compounds."""
+        """Set why nothing can be exported, or nothing, and whether the dataset holds compounds, or will."""
         self._reason, self._compounds = reason, compounds
         self._show()
 
@@ -166,7 +166,7 @@ class ExportPanel(QWidget):
 
     def recipe_part(self) -> Exports | None:
         """The fields of a recipe; ``None`` if the export is not possible."""
-        if not self.chosen() or not self._allowed():
+        if not self.chosen() or not self._allowed() or self.refusing():
             return None
         options = self.options()
         return Exports(
@@ -233,8 +233,9 @@ class ExportPanel(QWidget):
             )
         elif not problem and not self._allowed():
             problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
-        self.export.setEnabled(not problem)
-        self.export.setToolTip(inert(problem))
+        for button in (self.export, self.enlarge):
+            button.setEnabled(not problem)
+            button.setToolTip(inert(problem))
         self._show_preview()
         self.chosenChanged.emit()
 

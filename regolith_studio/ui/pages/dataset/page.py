@@ -35,6 +35,7 @@ from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.messages import N_
 from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest
+from regolith_studio.session.study_requests import COMPOUND
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import (
     FoldingSplitter,
@@ -423,7 +424,9 @@ class DatasetPage(PageWidget):
             reason = tr("There are too few particles to choose from: open two or more.")
         if self._is_current():
             reason = ""
-        compounds = bool(self._dataset.compounds) if self._dataset is not None else False
+        compounds = self._context.session.choices.method == COMPOUND  # it may make them
+        if self._dataset is not None and self._is_current():
+            compounds = bool(self._dataset.compounds)
         # first, since each change shows the filling again, and without classes there is none
         self.targets.show_filling(self._filling if self._dataset or self._classes_to_build else None)
         self.targets.set_ready(reason, compounds)
@@ -526,6 +529,7 @@ class DatasetPage(PageWidget):
     def _show_choices(self) -> None:
         self.folder.shapes.setText(coarsening_text(self._context.session.choices))
         self._show_result()
+        self._enable_export()
 
     def _take_opened(self) -> None:
         """Show the values of an opened recipe, once."""
