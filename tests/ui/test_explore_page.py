@@ -8,9 +8,12 @@ from PIL import Image
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.oriented_box import minimum_volume_box
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.scene import overlays
 from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import SURFACE
+from regolith_studio.session.session import Session
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.explore.page import PictureDialog
 
 SECONDS = 120.0
@@ -142,3 +145,9 @@ def test_that_a_number_of_facets_found_by_its_loss_is_explained_by_the_loss(wind
     wait(lambda: button.text() == "Use 12 facets")  # refreshed at its next refresh
     assert window.page.coarsening.finding.text() == "Nothing is gained beyond 12 facets."
     assert button.toolTip() == "With these facets the loss was no larger."
+
+
+def test_that_nothing_is_being_computed_while_nothing_is_open(shown, preferences):
+    page = shown(MainWindow(Session(InlineRunner()), preferences, "image")).page
+    assert [frame.detail.text() for frame in page.three_views.frames.values()] == ["", "", ""]
+    assert page.assessment.sentence.text() == "Open a particle first."

@@ -269,6 +269,8 @@ def test_that_the_verdict_on_one_particle_never_stands_for_another(shown):
     panel.show_results(Results(best=found), choices.replaced(selected="b"))
     assert panel.figures[0].text() == "–"
     assert "not finished" in panel.sentence.text()
+    panel.show_results(Results(), Choices())
+    assert panel.sentence.text() == "Open a particle first."
 
 
 def test_that_presets_are_losses_and_one_without_is_listed_only_while_it_is_in_use(shown):

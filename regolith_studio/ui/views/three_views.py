@@ -243,7 +243,7 @@ class ThreeViews(QSplitter):
             self._show_status,
         )
         self.set_theme(self._theme)
-        self._empty_titles()
+        self._empty_titles(waiting=False)
 
     def show_particle(self, entry: ParticleEntry | None) -> None:
         """Put a particle on screen; the other views wait for what belongs to it."""
@@ -256,7 +256,7 @@ class ThreeViews(QSplitter):
         for name in NAMES[1:]:
             self.views[name].draw(surfaces.clear)
         self._draw_extras(*NAMES)
-        self._empty_titles()
+        self._empty_titles(waiting=True)
         self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
@@ -458,10 +458,12 @@ class ThreeViews(QSplitter):
             self._hidden = hidden_faces(particle, self._star_point)
         return self._hidden
 
-    def _empty_titles(self) -> None:
+    def _empty_titles(self, *, waiting: bool) -> None:
+        """Name the views; `waiting` says that fit and polyhedron of a particle are being computed."""
+        soon = tr("being computed …") if waiting else ""
+        late = tr("being computed; the first one takes longer …") if waiting else ""
         self.frames[PARTICLE].set_texts(tr("Particle"))
-        self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), tr("being computed …"), tr("Fit"))
-        late = tr("being computed; the first one takes longer …")
+        self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), soon, tr("Fit"))
         self.frames[POLYHEDRON].set_texts(tr("Polyhedron"), late)
 
 

@@ -339,7 +339,12 @@ class AssessmentPanel(ResultView):
         if found is None:
             why = translate(results.failures.get("coarsening", ""))
             state = ResultState.FAILED if why else ResultState.NONE
-            note = why or tr("The polyhedron is not finished yet.")
+            missing = (
+                tr("The polyhedron is not finished yet.")
+                if choices.selected
+                else tr("Open a particle first.")
+            )
+            note = why or missing
             self.show_record(ResultRecord(state=state, note=note))
             return
         shares = ((found.rmsre, ".2%"), (found.jaccard_distance, ".1%"))
