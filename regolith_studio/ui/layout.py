@@ -199,8 +199,8 @@ def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -
 class FoldingSplitter(QSplitter):
     """Results and their controls, below each other where they have no room side by side.
 
-    Controls in a scrolled column are shown whole where the page scrolls anyway: two scroll bars beside each
-    other would both be needed to see the last of them.
+    A column of controls is shown whole below its results, and a column in controls wherever the page scrolls
+    anyway: two scroll bars beside each other would both be needed to see the last of them.
     """
 
     def __init__(self, results: QWidget, controls: QWidget, sizes: Sequence[int]) -> None:
@@ -213,6 +213,8 @@ class FoldingSplitter(QSplitter):
         self.setStretchFactor(0, 1)
         self.setSizes(list(sizes))
         self.setProperty(STANDARD_SIZES, list(sizes))
+        self._beside = self.saveState()
+        """The border between the parts when they were last side by side."""
 
     def minimumSizeHint(self) -> QSize:
         """As narrow as the wider part: the other one goes below it."""
@@ -226,10 +228,15 @@ class FoldingSplitter(QSplitter):
         below = results.width() + self.handleWidth() + controls.width() > room.width()
         for column in self._controls.findChildren(_Column):
             column.set_whole(below or results.height() > room.height())
-        direction = Qt.Orientation.Vertical if below else Qt.Orientation.Horizontal
-        if direction != self.orientation():
-            self.setOrientation(direction)
+        if isinstance(self._controls, _Column):  # beside results it scrolls alone: they stay in sight
+            self._controls.set_whole(below)
+        stacked = self.orientation() == Qt.Orientation.Vertical
+        if below and not stacked:
+            self._beside = self.saveState()
+            self.setOrientation(Qt.Orientation.Vertical)
             self.setSizes(self.property(STANDARD_SIZES))
+        elif stacked and not below:
+            self.restoreState(self._beside)
 
 
 def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:

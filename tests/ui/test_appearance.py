@@ -119,14 +119,14 @@ def test_that_smaller_letters_give_the_borders_of_the_pages_their_places_back(sh
     window.resize(1480, 900)
     columns = window.findChild(QSplitter, "explore_columns")
     restore_borders(window)
-    standard, least = columns.sizes(), columns.widget(2).minimumSizeHint().width()
+    standard, least = columns.sizes(), columns.widget(1).minimumSizeHint().width()
     window.appearance.choose(**{FONT_SIZE: 200})
-    wait(lambda: columns.sizes()[2] > standard[2], 10.0)
-    columns.setSizes([500, 300, 600])
+    wait(lambda: columns.sizes()[1] > standard[1], 10.0)
+    columns.setSizes([800, 600])
     assert columns.sizes() != standard
     window.appearance.choose(**{FONT_SIZE: 100})
     wait(lambda: columns.sizes() == standard, 10.0)
-    wait(lambda: columns.widget(2).minimumSizeHint().width() == least, 10.0)
+    wait(lambda: columns.widget(1).minimumSizeHint().width() == least, 10.0)
 
 
 def test_that_a_theme_reaches_dialogs_of_the_window(app, shown):

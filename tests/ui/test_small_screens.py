@@ -15,6 +15,7 @@ from regolith_studio.ui.page import ScrollablePage
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.pages.explore.plots import FONT_SIZE as LETTERS_OF_TWO
 from regolith_studio.ui.theme import choose_font_size
+from regolith_studio.ui.widgets.fields import text_room
 from regolith_studio.ui.widgets.plots.base import plain_text
 
 SCREEN = QSize(960, 540)
@@ -63,7 +64,7 @@ def test_that_no_page_is_scrolled_sideways_on_a_small_screen(
 @pytest.mark.slow
 @pytest.mark.usefixtures("usual_letters")
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_that_pages_of_results_are_only_scrolled_down_in_letters_of_twice_the_size(
+def test_that_pages_are_only_scrolled_down_in_letters_of_twice_the_size(
     shown, preferences, app, speaking, language
 ):
     speaking(language)
@@ -72,15 +73,20 @@ def test_that_pages_of_results_are_only_scrolled_down_in_letters_of_twice_the_si
     window.session.adopt([Particle(f"grain-{k}", icosphere(1).moved(scale=20.0 + k)) for k in range(3)])
     for width, height in ((960, 540), (1280, 800), (1920, 1080)):
         window.resize(width, height)
-        for key in ("studies", "dataset", "repose", "lecture"):
+        for key in PAGES:
             page = window.go(key)
             for _ in range(8):
                 app.processEvents()
             area = page.parentWidget().parentWidget()
             assert area.horizontalScrollBar().maximum() == 0, (key, width)
-            if key == "dataset":
+            if key == "dataset" or (width == SCREEN.width() and key in ("explore", "model")):
                 column = page.findChild(QScrollArea, "controls").verticalScrollBar()
-                assert 0 in (column.maximum(), area.verticalScrollBar().maximum()), width
+                assert 0 in (column.maximum(), area.verticalScrollBar().maximum()), (key, width)
+            if key == "sample":
+                for figure in page.statistics.card.figures:
+                    least = figure.minimumSizeHint()
+                    assert figure.width() >= least.width(), (figure.text(), width)
+                    assert figure.height() >= least.height(), (figure.text(), width)
 
 
 @pytest.mark.usefixtures("usual_letters")
@@ -187,6 +193,23 @@ def test_that_the_legends_of_explore_are_whole(shown, preferences, settled, app,
         entries = plain_text(legend.text()).replace("\xa0", "_").split()
         assert entries
         assert max(map(legend.fontMetrics().horizontalAdvance, entries)) <= legend.width()
+
+
+@pytest.mark.usefixtures("usual_letters")
+def test_that_methods_and_most_presets_are_whole_in_letters_of_twice_the_size(shown, preferences, app):
+    preferences.window = preferences.window | {FONT_SIZE: 200}
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1280, 800)
+    for _ in range(5):
+        app.processEvents()
+    page = window.page
+    method, preset = page.coarsening.method, page.loss.preset
+    methods = [method.itemText(row) for row in range(method.count())]
+    for box, texts in (
+        (method, methods),
+        (preset, ("All descriptors and overlap", "Aspect ratio and overlap")),
+    ):
+        assert max(map(box.fontMetrics().horizontalAdvance, texts)) <= text_room(box)
 
 
 def test_that_explore_does_not_scroll_on_a_small_screen_below_a_title_bar(shown, preferences, settled):

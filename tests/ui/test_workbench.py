@@ -329,8 +329,8 @@ def test_that_the_time_left_follows_from_the_time_gone(done, total, seconds, wor
 def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     columns = window.page.findChild(QSplitter, "explore_columns")
     total = sum(columns.sizes())
-    columns.setSizes([total // 3, total // 3, total // 3])
-    columns.splitterMoved.emit(total // 3, 1)
+    columns.setSizes([total * 3 // 5, total - total * 3 // 5])
+    columns.splitterMoved.emit(total * 3 // 5, 1)
     wanted = columns.sizes()
     window.close()
     kept = Preferences.load()
@@ -347,8 +347,8 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
     columns = window.findChild(QSplitter, "explore_columns")
     window.window_state.restore_standard(window)
     standard = columns.sizes()
-    columns.setSizes([500, 300, 500])
-    columns.splitterMoved.emit(500, 1)
+    columns.setSizes([700, 600])
+    columns.splitterMoved.emit(700, 1)
     assert columns.sizes() != standard
     window.window_state.keep(window)
     window.menus.by_name["standard_layout"].trigger()

@@ -41,6 +41,7 @@ from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import GAIN, SWEEPS, sufficient_facets
 from regolith_studio.ui.layout import (
+    FoldingSplitter,
     dialog_buttons,
     hbox,
     named,
@@ -449,10 +450,11 @@ class ExplorePage(PageWidget):
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         self._list = padded(self.particles, 10, 10, 2, 8)
-        parts = [self._list, padded(middle, 2, 10, 2, 8), controls]
-        columns = side_by_side(parts, [LIST_WIDTH, 800, CONTROLS_WIDTH], stretch=1)
+        results = side_by_side([self._list, padded(middle, 2, 10, 2, 8)], [LIST_WIDTH, 800], stretch=1)
         for part, share in enumerate((1, 4)):
-            columns.setStretchFactor(part, share)
+            results.setStretchFactor(part, share)
+        results.setObjectName("explore_results")
+        columns = FoldingSplitter(results, controls, (LIST_WIDTH + 800, CONTROLS_WIDTH))
         columns.setObjectName("explore_columns")
         hbox(columns, parent=self)
 

@@ -48,6 +48,9 @@ from regolith_studio.ui.widgets.labels import (
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
 from regolith_studio.ui.widgets.table import definition
 
+DIGITS_OF_NAME = 19
+"""Width of most names of methods and presets in digits."""
+
 
 class FitPanel(QWidget):
     """Edits l_max and the options of the fit."""
@@ -168,6 +171,7 @@ class LossPanel(QWidget):
         self._keep: frozenset[str] | None = None
         self.bar = PresetBar("preset", tr("Preset of weights"), heading(tr("Weights of the loss (Eq. 9)")))
         self.preset, self.reset = self.bar.box, self.bar.reset
+        self.preset.setMinimumContentsLength(DIGITS_OF_NAME)
         self.reset.setObjectName("reset_weights")
         self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
         self.locks = {key: lock_of(key) for key in LOSS_KEYS}

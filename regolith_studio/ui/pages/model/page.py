@@ -40,7 +40,7 @@ from regolith_studio.shape_models.materials import MaterialCard, materials, writ
 from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.ui.layout import hbox, padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import FoldingSplitter, hbox, padded, scrolled_column, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import (
     DistributionsPanel,
@@ -546,8 +546,8 @@ class ModelPage(PageWidget):
         self._tabs = tabs("model_tabs", [*shown, (self.evaluation, tr("Evaluation"))])
         middle = stacked([self.live, self._tabs], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
-        parts = [padded(middle, 10, 10, 2, 8), scrolled_column([self.source, self.drawing])]
-        columns = side_by_side(parts, [900, 310], stretch=0)
+        controls = scrolled_column([self.source, self.drawing])
+        columns = FoldingSplitter(padded(middle, 10, 10, 2, 8), controls, (900, 310))
         columns.setObjectName("model_columns")
         hbox(columns, parent=self)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QLineEdit,
     QScrollArea,
+    QSizePolicy,
     QTableWidget,
     QTableWidgetItem,
     QWidget,
@@ -36,7 +37,7 @@ from regolith_studio.scene.overlays import FAULT_COLOURS
 from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, health_sentences, sample_table
-from regolith_studio.ui.layout import STRETCH, equal_parts, hbox, named, side_by_side, stacked, tabs, vbox
+from regolith_studio.ui.layout import STRETCH, FoldingSplitter, equal_parts, hbox, named, stacked, tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.plots import MatchPanel, ScatterPanel, StatisticsPanel
 from regolith_studio.ui.theme import current_theme
@@ -159,6 +160,10 @@ class HealthPanel(QWidget):
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         return table
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as two tables: the texts beside the table take half of what there is."""
+        return QSize(2 * self.table.minimumSizeHint().width(), super().minimumSizeHint().height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -338,6 +343,8 @@ class SamplePage(PageWidget):
         self.reports = tabs(
             "sample_tabs", [(self.statistics, tr("Statistics")), (self.health, tr("Health of the mesh"))]
         )
+        self.reports.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self.reports.setMinimumHeight(0)  # figures and sentence of the statistics are whole
         parts = stacked([self.table, self.reports], [490, 300], stretch=0)
         parts.setObjectName("sample_rows")
         column.addWidget(parts, 1)
@@ -350,7 +357,7 @@ class SamplePage(PageWidget):
         right = equal_parts(Qt.Orientation.Vertical, [self.frame, self.plots])
         right.setObjectName("sample_pictures")
         right.setContentsMargins(2, 10, 10, 8)
-        columns = side_by_side([left, right], [1150, 600], stretch=0)
+        columns = FoldingSplitter(left, right, (1150, 600))
         columns.setObjectName("sample_columns")
         hbox(columns, parent=self)
 

@@ -25,7 +25,7 @@ from regolith_studio.jobs.scan_jobs import (
     preview_part,
     view_labels,
 )
-from regolith_studio.ui.layout import CONTROLS_WIDTH, hbox, padded, scrolled_column, side_by_side, tabs
+from regolith_studio.ui.layout import CONTROLS_WIDTH, FoldingSplitter, hbox, padded, scrolled_column, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls, WorkflowPanel
 from regolith_studio.ui.pages.scan.corrections import Corrections, Painting
@@ -409,9 +409,7 @@ class ScanPage(PageWidget):
                 inside.setContentsMargins(8, 8, 8, 8)
         self.tabs.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         controls = scrolled_column([self.workflow, self.tabs])
-        columns = side_by_side(
-            [padded(self.slices, 10, 10, 2, 8), controls], [1100, CONTROLS_WIDTH + 20], stretch=0
-        )
+        columns = FoldingSplitter(padded(self.slices, 10, 10, 2, 8), controls, (1100, CONTROLS_WIDTH + 20))
         columns.setObjectName("scan_columns")
         hbox(columns, parent=self)
 
