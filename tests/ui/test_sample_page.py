@@ -58,6 +58,15 @@ def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window
     wait(lambda: window.page.particles.value() == {"selected": "flat-1"})
 
 
+def test_that_the_view_says_what_its_colours_mean_while_they_are_shown(window, page, wait):
+    window.session.select("agglutinate-1")
+    wait(lambda: "hidden from the star point (" in page.frame.detail.text())
+    page.health.where.click()
+    assert page.frame.detail.text().endswith("triangles")
+    page.health.where.click()
+    assert "hidden from the star point (" in page.frame.detail.text()
+
+
 def test_that_the_filter_narrows_table_plot_and_statistics(page):
     QTest.keyClicks(page.filter, "S<0.75 AR>2")
     names = [entry.id for entry in page.table.particles.rows]

@@ -185,7 +185,11 @@ class HealthPanel(QWidget):
 
 def _legend_entry(kind: str, count: int) -> str:
     mark = f'<span style="color:{FAULT_COLOURS[kind]}">&#9632;</span>&nbsp;'
-    return mark + html.escape(f"{tr(KINDS[kind])} ({number_text(count, ',')})")
+    return mark + html.escape(_counted(kind, count))
+
+
+def _counted(kind: str, count: int) -> str:
+    return f"{tr(KINDS[kind])} ({number_text(count, ',')})"
 
 
 def translated_health(entry: ParticleEntry) -> list[str]:
@@ -421,12 +425,12 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        self.frame.set_texts(rich(entry.id), tr("{count:,} triangles", count=len(mesh.faces)))
         if mesh is not self._shown:
             self._shown = mesh
             self._faults = {}
             self.frame.view.draw(self._draw_particle)
             self._camera.frame(mesh.vertices)
+        self.frame.set_texts(rich(entry.id), self._detail(mesh))
         if entry is not self._reported:
             self._reported = entry
             self.health.show_entry(entry)
@@ -442,11 +446,23 @@ class SamplePage(PageWidget):
 
     def _draw_faults(self) -> None:
         self.frame.view.draw(self._draw_particle)
+        if self._shown is not None:
+            self.frame.set_detail(self._detail(self._shown))
 
     def _draw_particle(self, plotter: Any) -> None:
         if self._shown is not None:
             surfaces.show_particle(plotter, self._shown)
-        overlays.show_faults(plotter, self._faults if self.health.where.isChecked() else {})
+        overlays.show_faults(plotter, self._marked)
+
+    @property
+    def _marked(self) -> dict[str, FloatArray]:
+        """Triangles that the view colours, by their kind of fault."""
+        return self._faults if self.health.where.isChecked() else {}
+
+    def _detail(self, mesh: Mesh) -> str:
+        """The quiet line of the view: its triangles, and what the colours on them mean."""
+        marked = [_counted(kind, len(found)) for kind, found in self._marked.items() if len(found)]
+        return " · ".join([tr("{count:,} triangles", count=len(mesh.faces)), *marked])
 
     def _select(self, name: str) -> None:
         if any(entry.id == name for entry in self._session.particles):
