@@ -100,3 +100,27 @@ def test_that_the_reason_of_the_system_is_said(answered, tmp_path, monkeypatch):
     chosen, said = answered(str(tmp_path / "new"))
     assert chosen == ""
     assert said == [f"The folder {tmp_path / 'new'} cannot be made (the file system is read-only)."]
+
+
+def test_that_a_click_beside_the_completions_of_a_typed_folder_acts(shown, wait, tmp_path):
+    (tmp_path / "figures").mkdir()
+    dialog = shown(FolderDialog(None, "Folder of figures", str(tmp_path)))
+    line = dialog.findChild(QLineEdit, "fileNameEdit")
+    popup = line.completer().popup()
+
+    def offered():
+        line.clear()
+        QTest.keyClicks(line, "fi")
+        return popup.isVisible()
+
+    wait(offered)
+    button = next(each for each in dialog.findChildren(QPushButton) if "ancel" in each.text())
+    pressed = []
+    button.pressed.connect(lambda: pressed.append(popup.isVisible()))
+    QTest.mousePress(
+        popup, Qt.MouseButton.LeftButton, pos=popup.mapFromGlobal(button.mapToGlobal(button.rect().center()))
+    )
+    assert pressed == [False]
+    QTest.mouseRelease(button, Qt.MouseButton.LeftButton)
+    assert dialog.result() == 0
+    assert not dialog.isVisible()

@@ -1,9 +1,13 @@
 """What is asked about files: their unit, what becomes of open particles, a folder to write into."""
 
 from pathlib import Path
+from typing import cast
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QEvent, QObject, QPointF, Signal
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QApplication,
     QCheckBox,
     QDialog,
     QDialogButtonBox,
@@ -223,8 +227,30 @@ class FolderDialog(QFileDialog):
         self.setLabelText(QFileDialog.DialogLabel.FileName, tr("Folder (created if missing):"))
         if (line := self._line()) is not None:
             line.textChanged.connect(self._allow)  # after Qt, which greys the button out for a new one
+            if (completions := line.completer().popup()) is not None:
+                completions.installEventFilter(self)
         if proposed:
             self.selectFile(proposed)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Let a click beside the completions close them and act: Qt would take it for the closing alone."""
+        if event.type() == QEvent.Type.MouseButtonPress and isinstance(watched, QAbstractItemView):
+            press = cast(QMouseEvent, event)
+            if not watched.rect().contains(press.position().toPoint()):
+                watched.hide()
+                if (below := QApplication.widgetAt(press.globalPosition().toPoint())) is not None:
+                    place = QPointF(below.mapFromGlobal(press.globalPosition()))
+                    again = QMouseEvent(
+                        press.type(),
+                        place,
+                        press.globalPosition(),
+                        press.button(),
+                        press.buttons(),
+                        press.modifiers(),
+                    )
+                    QApplication.sendEvent(below, again)
+                return True
+        return super().eventFilter(watched, event)
 
     @staticmethod
     def ask(parent: QWidget | None, title: str, start: str = "", proposed: str = "") -> str:
