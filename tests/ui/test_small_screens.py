@@ -1,7 +1,7 @@
 """Windows with little room: a screen of 1920x1080 pixels at a scale of two leaves 960x540."""
 
 import pytest
-from PySide6.QtCore import QSize
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QScrollArea, QWidget
 
 from regolith_studio.geometry.particle import Particle
@@ -15,7 +15,7 @@ from regolith_studio.ui.page import ScrollablePage
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.pages.explore.plots import FONT_SIZE as LETTERS_OF_TWO
 from regolith_studio.ui.theme import choose_font_size
-from regolith_studio.ui.widgets.fields import text_room
+from regolith_studio.ui.widgets.fields import ElidedComboBox, text_room
 from regolith_studio.ui.widgets.plots.base import plain_text
 
 SCREEN = QSize(960, 540)
@@ -242,3 +242,20 @@ def test_that_plots_stand_behind_each_other_only_where_two_have_no_room(shown, p
         assert {panel for group in tabs for panel in group} == everything
         assert len(tabs[1]) == beside
         assert plots.right.isVisible() == bool(beside)
+
+
+@pytest.mark.parametrize("points", [7.3, 9.0, 11.7])
+def test_that_a_box_as_wide_as_it_prefers_shows_its_longest_label_whole(shown, app, points):
+    box = ElidedComboBox()
+    box.prefers_whole = True
+    font = box.font()
+    font.setPointSizeF(points)
+    box.setFont(font)
+    box.setMinimumContentsLength(2)
+    box.addItems(["Exact minimum volume", "Volume"])
+    shown(box).resize(box.sizeHint())
+    app.processEvents()
+    right = Qt.TextElideMode.ElideRight
+    for row in range(box.count()):
+        label = box.itemText(row)
+        assert box.fontMetrics().elidedText(label, right, text_room(box)) == label

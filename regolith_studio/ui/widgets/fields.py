@@ -60,7 +60,7 @@ class ElidedComboBox(QComboBox):
     def whole_width(self) -> int:
         labels = (self.itemText(row) for row in range(self.count()))
         widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
-        return widest + self.width() - text_room(self)
+        return widest + 1 + self.width() - text_room(self)  # advances are rounded to pixels
 
     def sizeHint(self) -> QSize:
         hint = super().sizeHint()
