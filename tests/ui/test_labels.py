@@ -93,6 +93,13 @@ def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferenc
     dialog.close()
 
 
+def test_that_a_note_of_large_letters_has_the_height_of_their_lines(shown):
+    text = hint_label("Short.")
+    text.setStyleSheet("font-size: 40px")
+    note = shown(FixedHeightText((text,), 2))
+    assert note.sizeHint().height() >= 2 * text.fontMetrics().lineSpacing() > 80
+
+
 def test_that_a_note_longer_than_its_place_is_shown_in_full_by_a_button_and_scrolls_nothing(shown, app, wait):
     text = hint_label("Short.")
     note = shown(FixedHeightText((text,), 2))

@@ -173,9 +173,10 @@ class FixedHeightText(QScrollArea):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        part = (self.height() - 2 * self.frameWidth()) % self.fontMetrics().lineSpacing()
+        line = self._line
+        part = (self.height() - 2 * self.frameWidth()) % line
         self.setViewportMargins(0, 0, 0, part)  # the tops of a further line would be seen there
-        width, line = self.more.sizeHint().width(), self.fontMetrics().lineSpacing()
+        width = self.more.sizeHint().width()
         bottom = self.height() - self.frameWidth() - part
         self.more.setGeometry(self.width() - width, bottom - line, width, line)
 
@@ -190,7 +191,14 @@ class FixedHeightText(QScrollArea):
 
     def _height(self, lines: int) -> int:
         # the dots of Ä, Ö and Ü rise above what Qt takes for the height of a line
-        return lines * self.fontMetrics().lineSpacing() + 2 + 2 * self.frameWidth()
+        return lines * self._line + 2 + 2 * self.frameWidth()
+
+    @property
+    def _line(self) -> int:
+        """Height of a line of the texts, whose letters may be larger than those of this widget."""
+        for text in self._texts:
+            text.ensurePolished()
+        return max(text.fontMetrics().lineSpacing() for text in self._texts)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

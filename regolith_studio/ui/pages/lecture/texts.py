@@ -10,6 +10,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
 from regolith_studio.ui.translation import Markup, in_a_sentence, number_text, tr
 from regolith_studio.ui.widgets.formula import BREAK
+from regolith_studio.ui.widgets.labels import plain_symbol
 
 TERMS = (JACCARD, *LOSS_KEYS)
 ROUNDING = 1e-9
@@ -30,7 +31,7 @@ def symbol(key: str) -> str:
 
 
 def plain(key: str) -> str:
-    return "J" if key == JACCARD else CATALOGUE[key].symbol.replace("_", "")
+    return "J" if key == JACCARD else plain_symbol(CATALOGUE[key].symbol)
 
 
 def terms_of(weights: LossWeights, found: Evaluation) -> dict[str, float]:
