@@ -3532,8 +3532,8 @@
         <translation>Mehr, als hier simuliert werden kann: eine kleinere Masse oder größere Partikel nehmen.</translation>
     </message>
     <message>
-        <source>More than {limit} are too many:</source>
-        <translation>Mehr als {limit} sind zu viele:</translation>
+        <source>More than {limit} are too many.</source>
+        <translation>Mehr als {limit} sind zu viele.</translation>
     </message>
     <message>
         <source>Mouse in the views</source>

@@ -264,7 +264,7 @@ def _filling_text(label: str, found: CylinderFilling) -> str:
     )
     if found.n_particles <= MANY_PARTICLES:
         return text
-    return text + " " + tr("More than {limit} are too many:", limit=number_text(MANY_PARTICLES, ","))
+    return text + " " + tr("More than {limit} are too many.", limit=number_text(MANY_PARTICLES, ","))
 
 
 class LossesLabel(QScrollArea):
