@@ -4,9 +4,11 @@ import hashlib
 import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from uuid import uuid4
 
+from psygnal import SignalInstance
 from PySide6.QtCore import QDateTime, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
@@ -92,6 +94,15 @@ class CopyLock:
             self._handle = -1
 
 
+@dataclass(frozen=True)
+class _Opening:
+    """A project whose particles are being read: its name, the task, and the last failure since it began."""
+
+    name: str
+    task: int
+    reason: str = ""
+
+
 class ProjectFiles(QObject):
     """The current project file, and whether the session has changed since it was saved.
 
@@ -116,6 +127,8 @@ class ProjectFiles(QObject):
         self._recovered: dict[Path, CopyLock] = {}
         self._copied: Project | None = None
         self._begun: Recipe | None = None
+        self._opening: _Opening | None = None
+        self._to_resume: Project | None = None
         self._restored = False
         self._changed = False
         self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS)
@@ -123,7 +136,18 @@ class ProjectFiles(QObject):
         self._timer.start()
         for event in (session.events.choices, session.events.particles):
             event.connect(self._note_change)
-        session.events.particles.connect(self._begin)
+        for connected, slot in self._reactions():
+            connected.connect(slot)
+
+    def _reactions(self) -> tuple[tuple[SignalInstance, Callable[..., None]], ...]:
+        """Events of the session, and what follows them."""
+        events = self._session.events
+        return (
+            (events.particles, self._begin),
+            (events.particles, self._go_on_later),
+            (events.failed, self._note_failure),
+            (events.tasks, self._follow_opening),
+        )
 
     @property
     def modified(self) -> bool:
@@ -235,7 +259,8 @@ class ProjectFiles(QObject):
         self._timer.stop()
         for event in (self._session.events.choices, self._session.events.particles):
             event.disconnect(self._note_change)
-        self._session.events.particles.disconnect(self._begin)
+        for connected, slot in self._reactions():
+            connected.disconnect(slot)
         _remove(autosave_path())
         self._lock.release()
         self._forget_recovered()
@@ -282,70 +307,57 @@ class ProjectFiles(QObject):
                 self._pages.go(key).restore(state)
         if project.page in self._pages.pages:
             self._pages.go(project.page)
-        self._go_on_later(project, path.name, task)
+        self._to_resume = project
+        if any(each.id == task for each in self._session.tasks):  # none is, if jobs run at once
+            self._opening = _Opening(path.name, task)
         return True
 
-    def _go_on_later(self, project: Project, name: str, task: int) -> None:
-        """Put the particle back on screen as soon as it has been read, and what was made of the particles.
+    def _follow_opening(self) -> None:
+        """Leave a project whose particles have not come when their reading has ended."""
+        opening = self._opening
+        if opening is None or any(each.id == opening.task for each in self._session.tasks):
+            return
+        self._opening = None
+        self._leave(opening)
 
-        A project whose particles cannot be read is left.
-        """
-        events, awaited, reasons = self._session.events, True, [""]
+    def _note_failure(self, failure: Failure) -> None:
+        if self._opening is not None:
+            self._opening = replace(self._opening, reason=failure.sentence)
 
-        def go_on() -> None:
-            stop()
-            if any(entry.id == project.selected for entry in self._session.particles):
-                self._session.select(project.selected)
-            for key, state in project.pages.items():
-                if key in self._pages.widgets:
-                    self._pages.widgets[key].resume(state)
-            self._steps.restart()
-            if self.path is not None and not self._restored:
-                self._saved = self._state()
-                self.changed.emit()
+    def _go_on_later(self) -> None:
+        if self._to_resume is not None:
+            QTimer.singleShot(0, self, self._go_on)
+        self._opening = None
 
-        def give_up() -> None:
-            stop()
-            self._leave(name, reasons[-1])
+    def _go_on(self) -> None:
+        """Put the particle of a project back on screen, and what was made of its particles."""
+        project, self._to_resume = self._to_resume, None
+        if project is None:
+            return
+        if any(entry.id == project.selected for entry in self._session.particles):
+            self._session.select(project.selected)
+        for key, state in project.pages.items():
+            if key in self._pages.widgets:
+                self._pages.widgets[key].resume(state)
+        self._steps.restart()
+        if self.path is not None and not self._restored:
+            self._saved = self._state()
+            self.changed.emit()
 
-        def stop() -> None:
-            events.particles.disconnect(later)
-            events.tasks.disconnect(follow)
-            events.failed.disconnect(note)
-
-        def later() -> None:
-            end(go_on)
-
-        def follow() -> None:
-            if all(each.id != task for each in self._session.tasks):
-                end(give_up)
-
-        def note(failure: Failure) -> None:
-            reasons.append(failure.sentence)
-
-        def end(then: Callable[[], None]) -> None:
-            nonlocal awaited
-            if awaited:
-                awaited = False
-                QTimer.singleShot(0, self, then)
-
-        events.particles.connect(later)
-        events.failed.connect(note)
-        if any(each.id == task for each in self._session.tasks):  # none is, if jobs run at once
-            events.tasks.connect(follow)
-
-    def _leave(self, name: str, reason: str) -> None:
+    def _leave(self, opening: _Opening) -> None:
         """Give up the name of a project whose particles were not read: saving would lose what it names.
 
         A copy that a crash has left is offered again by the next window.
         """
         self.path, self._digest, self._saved, self._restored = None, "", None, False
+        self._to_resume = None
         for lock in self._recovered.values():
             lock.release()
         self._recovered = {}
-        if reason:
+        if opening.reason:
+            name = opening.name
             note = tr("{name} is not open and stays as it is; move its files back to open it.", name=name)
-            self._toast.problem(f"{translate(reason)} {note}")
+            self._toast.problem(f"{translate(opening.reason)} {note}")
         self.changed.emit()
 
     def _note_change(self) -> None:
