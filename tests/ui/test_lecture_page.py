@@ -18,6 +18,7 @@ from regolith_studio.jobs.lecture_jobs import AnnealingStep, DegreeStep, trace_d
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.lecture import PAGE, texts
 from regolith_studio.ui.pages.lecture.lessons import PlaybackBar
 from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
@@ -132,6 +133,15 @@ def test_that_space_plays_and_arrows_step_on_the_page(page):
     QTest.keyClick(page, Qt.Key.Key_Space)
     assert playback.playing
     assert not page.particle.hasFocus()
+
+
+def test_that_the_page_takes_the_keys_from_the_sidebar(shown, preferences):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.pages.buttons["explore"].setFocus()
+    window.go("sample")
+    assert window.focusWidget() is window.pages.buttons["sample"]
+    window.go("lecture")
+    assert window.focusWidget() is window.page
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.layout import hbox, name_tabs, named, vbox
-from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.page import PageContext, PageWidget, Sidebar
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView, PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, font_share
@@ -87,7 +87,8 @@ class LecturePage(PageWidget):
     def on_show(self) -> None:
         self._fill()
         focus = self.window().focusWidget()
-        if focus is None or not focus.isVisible() or self.isAncestorOf(focus):
+        unused = focus is None or not focus.isVisible() or isinstance(focus.parent(), Sidebar)
+        if unused or self.isAncestorOf(focus):
             self.setFocus(Qt.FocusReason.OtherFocusReason)  # else Space would open the list of particles
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
