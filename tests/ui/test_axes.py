@@ -33,8 +33,11 @@ def test_that_the_label_of_an_axis_has_room_on_it_at_any_height(curve, app, poin
     app.processEvents()
     axis = curve.axes["left"]
     assert axis.label.boundingRect().width() <= axis.size().height()
-    said = axis.label.toPlainText().strip()
-    assert said == "Relative error of each descriptor [%]" or (said.endswith("…") and height < 500)
+    said, whole = axis.label.toPlainText().strip(), "Relative error of each descriptor [%]"
+    shorter = said == "[%]" or (said.endswith("…") and 3 * len(said) >= 2 * len(whole))
+    assert said == whole or (shorter and height < 500)
+    if (height, points) == (130, 18.0):
+        assert said == "[%]"
 
 
 def test_that_the_numbers_at_an_axis_stay_those_of_the_data_when_theme_and_letters_change(curve, app):

@@ -344,13 +344,19 @@ class CountAxis(FittedAxis):
 
 
 def fit_text(text: str, font: QFont, width: float) -> tuple[str, float]:
-    """Rich text and its size in points, so that it is at most `width` pixels wide if possible."""
+    """Rich text and its size in points, so that it is at most `width` pixels wide if possible.
+
+    A label of which two thirds have no room even in the smallest font becomes its unit in brackets.
+    """
     plain, size = plain_text(text), font.pointSizeF()
     smaller = QFont(font)
     while (letters := QFontMetricsF(smaller)).horizontalAdvance(plain + " ") > width:
         if smaller.pointSizeF() - FONT_STEP < MIN_LABEL_SCALE * size:
             left = max(width - letters.horizontalAdvance(" "), 0.0)
             dotted = letters.elidedText(plain, Qt.TextElideMode.ElideRight, left)
+            unit = text[text.rfind("[") :] if plain.endswith("]") and 3 * len(dotted) < 2 * len(plain) else ""
+            if unit and letters.horizontalAdvance(plain_text(unit) + " ") <= width:
+                return fit_text(unit, font, width)
             return html.escape(dotted), smaller.pointSizeF()
         smaller.setPointSizeF(smaller.pointSizeF() - FONT_STEP)
     return text, smaller.pointSizeF()
