@@ -333,6 +333,15 @@ def test_that_the_number_of_simulated_particles_is_stated_before_the_export(
     assert page.targets.enlarge.isHidden()
 
 
+def test_that_a_case_of_hundreds_of_particles_is_stated_too(page):
+    ball = icosphere(0)
+    page.targets.show_filling(None)
+    page._particles = tuple(Particle(f"ball-{k}", ball.moved(scale=20.0 + 0.01 * k)) for k in range(300))
+    page._show_sizes()
+    assert page.targets.preview.text().startswith("ANSYS Rocky (script): ")
+    assert len(page.distribution.classes) == 300
+
+
 @pytest.mark.slow
 def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
     chosen.session.adopt(grains(5, first=30))

@@ -77,8 +77,9 @@ PROPOSED = "regolith-dem"
 """Folder in that of the user which the first export proposes."""
 SETTINGS = (*SHAPE_FIELDS, *("weights", "settings", "seed", "target", "l_max", "level", "fit_options"))
 """Choices that the shapes of a dataset depend on."""
-MAX_MEASURED = 200
-"""Number of particles up to which measured sizes are drawn: volumes are computed in the GUI thread."""
+MAX_MEASURED = 1000
+"""Number of particles up to which measured sizes are drawn: volumes are computed in the GUI thread, .14 s for
+1,000 meshes of 1,280 triangles, and number and median size of a case 75 ms."""
 
 
 class DatasetPage(PageWidget):
