@@ -390,3 +390,7 @@ def test_that_the_number_of_a_step_has_room_in_letters_that_the_label_gets_later
         bar.resize(300, bar.sizeHint().height())
         app.processEvents()
         assert bar.clock.width() >= bar.clock.fontMetrics().horizontalAdvance(bar.clock.text())
+
+
+def test_that_the_names_of_terms_have_subscripts():
+    assert [texts.plain(key) for key in ("jaccard_distance", "min_diameter", "volume")] == ["J", "Dₘᵢₙ", "V"]
