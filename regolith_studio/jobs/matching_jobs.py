@@ -1,6 +1,7 @@
 """Jobs that measure the materials that are compared with a soil, and compare them."""
 
 import contextlib
+from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +22,7 @@ from regolith_studio.readers.particles import FileProblem, MeshFile, find_files,
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.shape_tables import SUFFIXES, read_shape_table
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.studies.matching import SHAPES, SIZES, ComparedMaterial, Match, match
+from regolith_studio.studies.matching import SHAPES, SIZES, ComparedMaterial, Match, check_count, match
 from regolith_studio.studies.population import descriptors_of
 
 N_DRAWN = 1000
@@ -98,6 +99,10 @@ def match_materials(
     problems: list[FileProblem] = []
     notes: list[str] = []
     sources = {name: _source(name, request, problems, notes) for name in names}  # before the long work
+    for name in candidates:
+        if isinstance(files := sources[name], list) and Path(name).exists():
+            for group, count in Counter(each.group for each in files).items():
+                check_count(_title(name, group), count)
     with open_executor(workers) as executor:
         if isinstance(target, str):
             groups = yield from _measured(target, sources[target], keys, request, executor, problems)
@@ -107,10 +112,7 @@ def match_materials(
         parts: list[ComparedMaterial] = []
         for name in candidates:
             measured = yield from _measured(name, sources[name], keys, request, executor, problems)
-            title = Path(name).name.removesuffix(".zip")
-            for group, columns in measured.items():
-                inner = group if group not in ("", title) else ""
-                parts.append(ComparedMaterial("/".join(filter(None, (title, inner))), columns))
+            parts += [ComparedMaterial(_title(name, group), columns) for group, columns in measured.items()]
     yield Started(N_("Comparing"))
     try:
         found = match(soil, parts, request.weighting, request.seed)
@@ -118,6 +120,12 @@ def match_materials(
         lost = f" {len(problems):,} not read, the first: {problems[0].with_path}" if problems else ""
         raise InputError(f"{error}{lost}") from error
     return DrawnMatch(found, tuple(problems), tuple(notes))
+
+
+def _title(name: str, group: str) -> str:
+    """Name of a group of a candidate."""
+    title = Path(name).name.removesuffix(".zip")
+    return title if group in ("", title) else f"{title}/{group}"
 
 
 _Columns = Mapping[str, np.ndarray]

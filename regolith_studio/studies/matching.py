@@ -202,11 +202,13 @@ def _check(target: ComparedMaterial, candidates: Sequence[ComparedMaterial]) -> 
     for each in (target, *candidates):
         if not each.columns.keys() & {"volume", *SIZES}:
             raise InputError(f"{each.name} has no size: neither volume, equivalent_radius nor width.")
-        count = len(next(iter(each.columns.values()), ()))
-        if count < MIN_ROWS:
-            raise InputError(
-                f"{each.name} has {plural(count, 'particle')}; a comparison needs at least {MIN_ROWS}."
-            )
+        check_count(each.name, len(next(iter(each.columns.values()), ())))
+
+
+def check_count(name: str, count: int) -> None:
+    """Check that a material has enough particles for a comparison."""
+    if count < MIN_ROWS:
+        raise InputError(f"{name} has {plural(count, 'particle')}; a comparison needs at least {MIN_ROWS}.")
 
 
 def _common_keys(materials: Sequence[ComparedMaterial]) -> tuple[str, ...]:
