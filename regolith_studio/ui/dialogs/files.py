@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import cast
 
-from PySide6.QtCore import QEvent, QObject, QPointF, Signal
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -229,6 +229,7 @@ class FolderDialog(QFileDialog):
             line.textChanged.connect(self._allow)  # after Qt, which greys the button out for a new one
             if (completions := line.completer().popup()) is not None:
                 completions.installEventFilter(self)
+                completions.setAttribute(Qt.WidgetAttribute.WA_NoMouseReplay)  # by Qt on other platforms
         if proposed:
             self.selectFile(proposed)
 
@@ -240,15 +241,13 @@ class FolderDialog(QFileDialog):
                 watched.hide()
                 if (below := QApplication.widgetAt(press.globalPosition().toPoint())) is not None:
                     place = QPointF(below.mapFromGlobal(press.globalPosition()))
-                    again = QMouseEvent(
-                        press.type(),
-                        place,
-                        press.globalPosition(),
-                        press.button(),
-                        press.buttons(),
-                        press.modifiers(),
-                    )
-                    QApplication.sendEvent(below, again)
+                    # the release goes to the window of the completions, which is hidden by then
+                    for kind in (press.type(), QEvent.Type.MouseButtonRelease):
+                        held = press.buttons() if kind == press.type() else Qt.MouseButton.NoButton
+                        again = QMouseEvent(
+                            kind, place, press.globalPosition(), press.button(), held, press.modifiers()
+                        )
+                        QApplication.sendEvent(below, again)
                 return True
         return super().eventFilter(watched, event)
 
