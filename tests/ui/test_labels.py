@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QDialog, QLabel, QVBoxLayout, QWhatsThis, QWidget
 
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
+from regolith_studio.ui.layout import STRETCH, vbox
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.widgets.labels import (
@@ -93,11 +94,17 @@ def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferenc
     dialog.close()
 
 
-def test_that_a_note_of_large_letters_has_the_height_of_their_lines(shown):
-    text = hint_label("Short.")
-    text.setStyleSheet("font-size: 40px")
-    note = shown(FixedHeightText((text,), 2))
-    assert note.sizeHint().height() >= 2 * text.fontMetrics().lineSpacing() > 80
+def test_that_a_note_whose_letters_become_large_gets_the_height_of_their_lines(shown, app):
+    text, panel = hint_label("Short."), QWidget()
+    note = FixedHeightText((text,), 2)
+    vbox(note, STRETCH, parent=panel)
+    shown(panel).resize(400, 300)
+    app.processEvents()
+    for pixels in (40, 12):
+        panel.setStyleSheet(f"QLabel {{ font-size: {pixels}px }}")
+        app.processEvents()
+        whole_lines = divmod(note.viewport().height(), text.fontMetrics().lineSpacing())
+        assert whole_lines == (2, 0)
 
 
 def test_that_a_note_longer_than_its_place_is_shown_in_full_by_a_button_and_scrolls_nothing(shown, app, wait):

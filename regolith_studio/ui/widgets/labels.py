@@ -4,7 +4,7 @@ import html
 import re
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, QLocale, QSize, Qt
+from PySide6.QtCore import QEvent, QLocale, QObject, QSize, Qt
 from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
@@ -145,6 +145,7 @@ class FixedHeightText(QScrollArea):
         column.setSpacing(0)
         for text in texts:
             text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+            text.installEventFilter(self)
             column.addWidget(text)
         column.addStretch(1)
         self.setProperty("role", "texts")
@@ -182,6 +183,11 @@ class FixedHeightText(QScrollArea):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # it is for the column around
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if watched in self._texts and event.type() == QEvent.Type.FontChange:
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
 
     def sizeHint(self) -> QSize:
         return QSize(super().sizeHint().width(), self._height(self._lines))
