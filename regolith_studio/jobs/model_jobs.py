@@ -222,7 +222,7 @@ def is_origin(note: str) -> bool:
 
 
 def drawn_group(part: str, title: str) -> str:
-    """Group of drawn particles, where they have no part not that of the particles of the model.
+    """Group of drawn particles: another one than that of the particles that the model was fitted to.
 
     - ``part``: the mixture's part that they were drawn from, if it has parts.
     - ``title``: of their population.

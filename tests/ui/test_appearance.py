@@ -334,7 +334,7 @@ def test_that_a_bar_of_unknown_length_is_not_full(app, shown, theme, text):
 
 @pytest.mark.usefixtures("usual_looks")
 @pytest.mark.parametrize("percent", [100, 150, 200, 80])
-def test_that_a_line_of_text_is_as_high_as_its_letters_in_a_spin_box(app, shown, percent):
+def test_that_a_line_of_text_is_as_high_as_its_font_in_a_spin_box(app, shown, percent):
     panel = shown(QWidget())
     field, column = QDoubleSpinBox(), QVBoxLayout(panel)
     field.setSuffix(" g")

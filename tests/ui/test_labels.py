@@ -94,7 +94,7 @@ def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferenc
     dialog.close()
 
 
-def test_that_a_note_whose_letters_become_large_gets_the_height_of_their_lines(shown, app):
+def test_that_a_note_whose_font_becomes_large_gets_the_height_of_their_lines(shown, app):
     text, panel = hint_label("Short."), QWidget()
     note = FixedHeightText((text,), 2)
     vbox(note, STRETCH, parent=panel)

@@ -24,14 +24,14 @@ FRAME = 40
 
 
 @pytest.fixture
-def usual_letters(app):
+def usual_font(app):
     usual = app.font()
     yield
     choose_font_size(None)
     app.setFont(usual)
 
 
-@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.usefixtures("usual_font")
 @pytest.mark.parametrize("letters", [100, pytest.param(150, marks=pytest.mark.slow), 200])
 def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, preferences, letters, app):
     preferences.window = preferences.window | {FONT_SIZE: letters}
@@ -44,7 +44,7 @@ def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, prefe
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.usefixtures("usual_font")
 @pytest.mark.parametrize(("language", "letters"), [("en", 100), ("de", 125), ("de", 200)])
 def test_that_no_page_is_scrolled_sideways_on_a_small_screen(
     shown, preferences, app, speaking, language, letters
@@ -62,9 +62,9 @@ def test_that_no_page_is_scrolled_sideways_on_a_small_screen(
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.usefixtures("usual_font")
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_that_pages_are_only_scrolled_down_in_letters_of_twice_the_size(
+def test_that_pages_are_only_scrolled_down_with_a_font_of_twice_the_size(
     shown, preferences, app, speaking, language
 ):
     speaking(language)
@@ -89,7 +89,7 @@ def test_that_pages_are_only_scrolled_down_in_letters_of_twice_the_size(
                     assert figure.height() >= least.height(), (figure.text(), width)
 
 
-@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.usefixtures("usual_font")
 def test_that_the_buttons_of_studies_are_whole_in_large_letters(shown, preferences, app):
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.resize(1280, 800)
@@ -170,7 +170,7 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
     assert {view.pose.position for view in views.values()} == {turned.position}
 
 
-@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.usefixtures("usual_font")
 @pytest.mark.parametrize(
     "letters", [100, pytest.param(150, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.slow)]
 )
@@ -195,8 +195,8 @@ def test_that_the_legends_of_explore_are_whole(shown, preferences, settled, app,
         assert max(map(legend.fontMetrics().horizontalAdvance, entries)) <= legend.width()
 
 
-@pytest.mark.usefixtures("usual_letters")
-def test_that_methods_and_most_presets_are_whole_in_letters_of_twice_the_size(shown, preferences, app):
+@pytest.mark.usefixtures("usual_font")
+def test_that_methods_and_most_presets_are_whole_with_a_font_of_twice_the_size(shown, preferences, app):
     preferences.window = preferences.window | {FONT_SIZE: 200}
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.resize(1280, 800)

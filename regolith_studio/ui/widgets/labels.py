@@ -22,8 +22,8 @@ CITATION = "regolith:citation"
 """Address of the citation, see :class:`regolith_studio.ui.dialogs.help.CitationLinks`."""
 _SYMBOL = re.compile(r"\b([lDA])_(min|max|l)\b")
 _SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
-_LETTERS = "aehiklmnoprstx0123456789"
-_SMALL = str.maketrans(_LETTERS, "ₐₑₕᵢₖₗₘₙₒₚᵣₛₜₓ₀₁₂₃₄₅₆₇₈₉")
+_WITH_SUBSCRIPT = "aehiklmnoprstx0123456789"
+_SMALL = str.maketrans(_WITH_SUBSCRIPT, "ₐₑₕᵢₖₗₘₙₒₚᵣₛₜₓ₀₁₂₃₄₅₆₇₈₉")
 
 
 def rich_symbol(text: str) -> Markup:
@@ -39,9 +39,9 @@ def plain_symbol(text: str) -> str:
     return _SUBSCRIPT.sub(lambda match: match[1] + subscript(match[2]), text)
 
 
-def subscript(letters: str) -> str:
-    """Letters as a subscript in plain text."""
-    return letters.translate(_SMALL) if set(letters) <= set(_LETTERS) else f"_{letters}"
+def subscript(text: str) -> str:
+    """Plain text as a subscript where Unicode has all of its characters as such, else after an underscore."""
+    return text.translate(_SMALL) if set(text) <= set(_WITH_SUBSCRIPT) else f"_{text}"
 
 
 def with_subscripts(words: str) -> str:
@@ -201,7 +201,7 @@ class FixedHeightText(QScrollArea):
 
     @property
     def _line(self) -> int:
-        """Height of a line of the texts, whose letters may be larger than those of this widget."""
+        """Height of a line of the texts, whose font may be larger than that of this widget."""
         for text in self._texts:
             text.ensurePolished()
         return max(text.fontMetrics().lineSpacing() for text in self._texts)
