@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_files
-from regolith_studio.io.file_names import unique_name
+from regolith_studio.io.file_names import name_key, unique_name
 from regolith_studio.io.own_files import parse_strict_json
 from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.settings import ReadingSettings
@@ -22,6 +22,7 @@ from regolith_studio.session.provenance import (
     ParticleRef,
     ParticleSource,
     SampleSource,
+    UnreadParticle,
     VirtualSource,
     VolumeSource,
 )
@@ -60,12 +61,16 @@ class SessionRecipe:
         choices: Choices,
         outputs: Outputs | None = None,
         dataset_request: DatasetRequest | None = None,
+        unread: Sequence[UnreadParticle] = (),
     ) -> "SessionRecipe":
-        """Of particles, choices and the dataset asked for; of the sample if there is no particle."""
+        """Of particles, choices and the dataset asked for; of the sample if there is no particle.
+
+        ``unread``: particles of an earlier recipe whose files could not be read, and which it keeps.
+        """
         request = (
             dataset_request if dataset_request and (outputs is None or outputs.dataset) else DatasetRequest()
         )
-        refs = [(entry.id, entry.ref) for entry in entries]
+        refs = _with_unread([(entry.id, entry.ref) for entry in entries], unread)
         origins = _in_recipe_order([ref.origin for _, ref in refs if ref is not None])
         named = dict(_names(origins))
         pairs = [(named.get(ref), name) for name, ref in refs]
@@ -100,6 +105,19 @@ class SessionRecipe:
         model = path.with_name(f"{path.stem}-model-{hashlib.sha256(content).hexdigest()[:8]}.json")
         named = population.model_copy(update={"sources": [str(model) if absolute_path else model.name]})
         return self.recipe.model_copy(update={"population": named}), {model: content}
+
+
+def _with_unread(
+    refs: Sequence[tuple[str, ParticleRef | None]], unread: Sequence[UnreadParticle]
+) -> list[tuple[str, ParticleRef | None]]:
+    """The particles with those that could not be read, in their places and under names of their own."""
+    merged = list(refs)
+    taken = dict.fromkeys((name_key(name) for name, _ in refs), 1)
+    for each in reversed(unread):
+        names = [name for name, _ in merged]
+        at = names.index(each.after) + 1 if each.after in names else 0 if not each.after else len(merged)
+        merged.insert(at, (unique_name(each.id, "", taken), each.ref))
+    return merged
 
 
 def _in_recipe_order(origins: Sequence[ParticleSource]) -> list[ParticleSource]:
@@ -174,7 +192,7 @@ class Project(BaseModel):
     @classmethod
     def of(cls, session: Session, page: str = "", pages: dict[str, dict[str, Any]] | None = None) -> Self:
         """The present state of a session."""
-        recipe = SessionRecipe.of(session.particles, session.choices).recipe
+        recipe = SessionRecipe.of(session.particles, session.choices, unread=session.unread).recipe
         return cls(recipe=recipe, selected=session.choices.selected, page=page, pages=pages or {})
 
     def save(self, path: Path, model: FittedModel | None = None) -> None:

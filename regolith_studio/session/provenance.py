@@ -1,13 +1,14 @@
 """The origin of open particles in the terms of a recipe, and how a recipe restores them."""
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.file_names import unique_name
 from regolith_studio.jobs.events import Steps
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, TableConvention
 from regolith_studio.readers.formats import mesh_suffixes
@@ -150,16 +151,44 @@ def ref_by_source(particle: Particle) -> ParticleRef | None:
     return ParticleRef(FileSource((source.path,), ReadingSettings(source.unit, source.repaired)), source.path)
 
 
+@dataclass(frozen=True)
+class UnreadParticle:
+    """A particle that a project or recipe names and that could not be read, as its file is not there.
+
+    - ``id``: its name among those of the project.
+    - ``after``: id of the particle that it stands behind; empty for the first.
+    """
+
+    id: str
+    ref: ParticleRef
+    after: str
+
+
+def unread_members(origin: ParticleSource, loaded: LoadedParticles) -> tuple[UnreadParticle, ...]:
+    """The members of an origin that are among the problems of its reading."""
+    paths = {problem.path for problem in loaded.problems}
+    taken: dict[str, int] = {}
+    unread, before = [], ""
+    for key, name, group in origin.members() if paths else ():
+        unique = unique_name(name, group, taken)
+        if key in paths:
+            unread.append(UnreadParticle(unique, ParticleRef(origin, key), before))
+        else:
+            before = unique
+    return tuple(unread)
+
+
 MAX_RESTORED = 2000
 """Maximum number of virtual particles that are opened: each becomes a mesh in memory."""
 
 
 @dataclass(frozen=True)
 class RestoredParticles:
-    """Particles of a recipe, each with its reference."""
+    """Particles of a recipe, each with its reference, and those that could not be read."""
 
     loaded: LoadedParticles
     refs: tuple[ParticleRef, ...]
+    unread: tuple[UnreadParticle, ...] = ()
 
 
 def restore_particles(recipe: Recipe, base: Path) -> Steps:
@@ -188,8 +217,21 @@ def restore_particles(recipe: Recipe, base: Path) -> Steps:
         raise FileError(problems[0].sentence if problems else "There is no particle in the recipe.")
     particles = tuple(particle for _, particle in read)
     return RestoredParticles(
-        LoadedParticles(particles, tuple(problems)), tuple(refs.of(item) for item, _ in read)
+        LoadedParticles(particles, tuple(problems)),
+        tuple(refs.of(item) for item, _ in read),
+        tuple(_unread(items.members, {item.name for item, _ in read}, refs)),
     )
+
+
+def _unread(
+    members: Sequence["BatchInput"], read: Collection[str], refs: "_References"
+) -> Iterator[UnreadParticle]:
+    before = ""
+    for item in members:
+        if item.name in read:
+            before = item.name
+        else:
+            yield UnreadParticle(item.name, refs.of(item), before)
 
 
 class _References:

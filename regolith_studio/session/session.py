@@ -29,9 +29,11 @@ from regolith_studio.session.provenance import (
     ParticleSource,
     RestoredParticles,
     SampleSource,
+    UnreadParticle,
     ref_by_source,
     refs_of,
     restore_particles,
+    unread_members,
 )
 from regolith_studio.session.recipe import DatasetRequest, Recipe
 from regolith_studio.session.recompute import LiveResults
@@ -52,6 +54,7 @@ class Session:
     - ``events``: signals of the session.
     - ``particles``, ``results``: all that is open, and what has been computed of the selected particle.
     - ``left_out``: sentences on what was not opened with the particles, such as the rest of a large archive.
+    - ``unread``: particles of the project or recipe whose files could not be read: saving keeps them.
     - ``runs_folder``: folder of the simulations.
     - ``dataset_request``: dataset settings of a recipe of this session; ``None`` before representatives are
       chosen.
@@ -61,6 +64,7 @@ class Session:
         self.events = SessionEvents()
         self.particles: tuple[ParticleEntry, ...] = ()
         self.left_out: tuple[str, ...] = ()
+        self.unread: tuple[UnreadParticle, ...] = ()
         self.results = Results()
         self._runner = runner
         chosen = choices or Choices(target="fit")  # the window begins with the paper's chain
@@ -139,6 +143,7 @@ class Session:
         add: bool = False,
         reading: ReadingSettings | None = None,
         convention: TableConvention = "auto",
+        restored: bool = False,
     ) -> int:
         """Read files and folders of meshes in the background; returns the task's id.
 
@@ -146,6 +151,7 @@ class Session:
         - ``add``: keep the particles that are open already.
         - ``reading``: how meshes are read; as chosen if left out.
         - ``convention``: of tables of coefficients: normalisation and phase.
+        - ``restored``: whether a project or recipe names them: those that cannot be read stay in it.
         """
         reading = reading or ReadingSettings.of(self.choices)
         reading = replace(reading, unit=unit or reading.unit)
@@ -153,7 +159,7 @@ class Session:
         origin = FileSource(tuple(map(str, named)), reading, convention=convention)
         tables = TableReading(None, convention)
         job = Job(load_particles, (named, reading, tables, MOST_SHOWN, self.choices.seed))
-        return self._load(N_("Reading particles"), job, origin, add)
+        return self._load(N_("Reading particles"), job, origin, add, restored=restored)
 
     def open_sample(self, add: bool = False) -> int:
         """Load the shipped particles, in place of the open ones unless `add`; returns the task's id."""
@@ -174,12 +180,12 @@ class Session:
             if entry.l_max is None:
                 files = [base / file for file in entry.files]
                 reading = ReadingSettings.of(entry)
-                return self.open(files, reading=reading, convention=entry.convention)
+                return self.open(files, reading=reading, convention=entry.convention, restored=True)
         return self._restore(recipe, base)
 
     def _restore(self, recipe: Recipe, base: Path, selected: str = "") -> int:
         def take(restored: RestoredParticles) -> None:
-            self._replace_particles(restored.loaded, restored.refs, selected=selected)
+            self._replace_particles(restored.loaded, restored.refs, selected=selected, unread=restored.unread)
 
         title = N_("Restoring particles")
         job = Job(restore_particles, (recipe, base))
@@ -347,9 +353,12 @@ class Session:
             changed = names ^ self.results.outdated
             self.update(*sorted(changed), outdated=names)
 
-    def _load(self, title: str, job: Job, origin: ParticleSource, add: bool = False) -> int:
+    def _load(
+        self, title: str, job: Job, origin: ParticleSource, add: bool = False, restored: bool = False
+    ) -> int:
         def take(loaded: LoadedParticles) -> None:
-            self._replace_particles(loaded, refs_of(loaded.particles, origin), add)
+            unread = unread_members(origin, loaded) if restored else ()
+            self._replace_particles(loaded, refs_of(loaded.particles, origin), add, unread=unread)
 
         reactions = Reactions(take, failed=self.failure_reporter(title))
         return self._board.start("load", title, job, reactions, repeats=True)
@@ -360,12 +369,14 @@ class Session:
         refs: Sequence[ParticleRef | None] = (),
         add: bool = False,
         selected: str = "",
+        unread: Sequence[UnreadParticle] = (),
     ) -> None:
         if loaded.problems:
             self.events.problems.emit(loaded.problems)
         if loaded.left_out:
             self.events.left_out.emit(loaded.left_out)
         self.left_out = (*self.left_out, *loaded.left_out) if add else loaded.left_out
+        self.unread = (*(self.unread if add else ()), *unread)
         kept = self.particles if add else ()
         fresh = unique_names(loaded.particles, [entry.id for entry in kept])
         found_refs = refs or [ref_by_source(particle) for particle in loaded.particles]

@@ -32,6 +32,7 @@ from regolith_studio.session.provenance import (
     ParticleRef,
     ParticleSource,
     SampleSource,
+    UnreadParticle,
     VirtualSource,
     VolumeSource,
 )
@@ -171,20 +172,23 @@ LOOK = "look"
 """Lane of the job that reads one particle while its unit is asked."""
 
 
-def without(session_recipe: SessionRecipe) -> tuple[str, ...]:
-    """What a recipe or project lacks, as one sentence; none where it is nothing."""
-    if not session_recipe.without_source:
-        return ()
-    names = ", ".join(session_recipe.without_source[:3]) + (
-        " …" if len(session_recipe.without_source) > 3 else ""
-    )
-    return (
-        tr(
-            "{count} particles came from no file and are not in it ({names}); export them.",
-            count=len(session_recipe.without_source),
-            names=names,
+def without(session_recipe: SessionRecipe, unread: Sequence[UnreadParticle] = ()) -> list[str]:
+    """What a recipe or project lacks, and what it keeps although it could not be read, in sentences."""
+    parts = (
+        (
+            N_("{count} particles came from no file and are not in it ({names}); export them."),
+            session_recipe.without_source,
+        ),
+        (
+            N_("{count} particles whose files could not be read stay in it ({names})."),
+            [each.id for each in unread],
         ),
     )
+    return [
+        tr(sentence, count=len(ids), names=", ".join(ids[:3]) + (" …" if len(ids) > 3 else ""))
+        for sentence, ids in parts
+        if ids
+    ]
 
 
 class Commands(QObject):
@@ -290,7 +294,13 @@ class Commands(QObject):
             for each in entries
         ]
         moved = [dataclasses.replace(each, ref=ref) for each, ref in zip(entries, refs, strict=True)]
-        recipe = self._to_reopen(moved)
+        unread = [
+            dataclasses.replace(each, ref=ParticleRef(changed, each.ref.key))
+            if each.ref.origin == origin
+            else each
+            for each in self._session.unread
+        ]
+        recipe = self._to_reopen(moved, unread)
         if recipe is None:
             self._toast.problem(
                 tr("Close the particles that came from no file first: they cannot be reopened.")
@@ -311,7 +321,10 @@ class Commands(QObject):
             return
         dataset_request = self._session.dataset_request
         session_recipe = SessionRecipe.of(
-            self._session.particles, self._session.choices, dataset_request=dataset_request
+            self._session.particles,
+            self._session.choices,
+            dataset_request=dataset_request,
+            unread=self._session.unread,
         )
         try:
             recipe, models = session_recipe.files_for(Path(name))
@@ -321,7 +334,7 @@ class Commands(QObject):
             return
         command = f"regolith-studio run {Path(name).name}"
         note = tr("Saved {name}; run it with: {command}", name=name, command=command)
-        self._toast.note(" ".join((note, *without(session_recipe))))
+        self._toast.note(" ".join((note, *without(session_recipe, self._session.unread))))
 
     def copy_command(self) -> None:
         """Put the command line that does the same onto the clipboard."""
@@ -389,7 +402,7 @@ class Commands(QObject):
 
     def _push_open(self, openings: list[Recipe]) -> None:
         """Add how to reopen what is open; where that is not possible, nothing beyond it can be reached."""
-        recipe = self._to_reopen(self._session.particles)
+        recipe = self._to_reopen(self._session.particles, self._session.unread)
         openings[:] = [*openings, recipe] if recipe is not None else []
 
     def _exchange(self, openings: list[Recipe], others: list[Recipe]) -> None:
@@ -398,9 +411,9 @@ class Commands(QObject):
         self._push_open(others)
         self._reopen(recipe)
 
-    def _to_reopen(self, entries: Sequence[ParticleEntry]) -> Recipe | None:
+    def _to_reopen(self, entries: Sequence[ParticleEntry], unread: Sequence[UnreadParticle]) -> Recipe | None:
         """How to reopen these particles; ``None`` where some came neither from a file nor from a model."""
-        kept = SessionRecipe.of(entries, self._session.choices)
+        kept = SessionRecipe.of(entries, self._session.choices, unread=unread)
         return None if kept.without_source else self._try(lambda: self._with_model(kept))
 
     def _with_model(self, kept: SessionRecipe) -> Recipe:

@@ -270,7 +270,7 @@ class ProjectFiles(QObject):
         return Project.of(self._session, self._pages.current, pages)
 
     def _session_recipe(self) -> SessionRecipe:
-        return SessionRecipe.of(self._session.particles, self._session.choices)
+        return SessionRecipe.of(self._session.particles, self._session.choices, unread=self._session.unread)
 
     def _write(self, path: Path) -> bool:
         state, session_recipe = self._state(), self._session_recipe()
@@ -280,7 +280,9 @@ class ProjectFiles(QObject):
             self._toast.problem(str(error))
             return False
         self.path, self._saved, self._digest, self._restored = path, state, _digest(path), False
-        self._toast.note(" ".join((tr("Saved {path}.", path=path), *without(session_recipe))))
+        self._toast.note(
+            " ".join((tr("Saved {path}.", path=path), *without(session_recipe, self._session.unread)))
+        )
         self.changed.emit()
         return True
 

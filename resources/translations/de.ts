@@ -6392,8 +6392,8 @@
         <translation>Die Probe</translation>
     </message>
     <message>
-        <source>The scan {path} has been moved or changed since the project was saved: open it again; its corrections are left out.</source>
-        <translation>Der Scan {path} wurde verschoben oder geändert, seit das Projekt gespeichert wurde: bitte neu öffnen; seine Korrekturen bleiben weg.</translation>
+        <source>The scan {path} has been moved or changed since the project was saved. Open it from its new place: the project keeps its corrections until then.</source>
+        <translation>Der Scan {path} wurde verschoben oder verändert, seit das Projekt gespeichert wurde. Öffnen Sie ihn an seinem neuen Ort: Das Projekt behält seine Korrekturen bis dahin.</translation>
     </message>
     <message>
         <source>The script is on the clipboard.</source>
@@ -8834,6 +8834,10 @@
     <message>
         <source>{count} particles up to l = {degree}.</source>
         <translation>{count} Partikel bis l = {degree}.</translation>
+    </message>
+    <message>
+        <source>{count} particles whose files could not be read stay in it ({names}).</source>
+        <translation>{count} Partikel, deren Dateien nicht gelesen werden konnten, bleiben darin ({names}).</translation>
     </message>
     <message>
         <source>{count} particles; left out: {border} at the border, {small} too small.</source>

@@ -296,3 +296,66 @@ def test_that_what_was_made_by_hand_is_named(session: Session, tmp_path: Path) -
     assert SessionRecipe.of(session.particles, session.choices).without_source == ("a", "mine")
     with pytest.raises(InputError, match="no particles to keep"):
         session.keep(set())
+
+
+def open_together(session: Session, folder: Path) -> None:
+    session.open([folder / f"g{number}.stl" for number in range(4)])
+
+
+def open_in_turn(session: Session, folder: Path) -> None:
+    session.open([folder / "g0.stl", folder / "g1.stl"])
+    session.open([folder / "g2.stl", folder / "g3.stl"], add=True)
+
+
+def open_and_close_some(session: Session, folder: Path) -> None:
+    open_in_turn(session, folder)
+    session.keep(["g0", "g1", "g2"])
+
+
+def open_beside_the_sample(session: Session, folder: Path) -> None:
+    session.open_sample()
+    open_together(session, folder)
+    session.open([folder / "g0.stl"], add=True)
+
+
+@pytest.mark.parametrize(
+    "open_some", [open_together, open_in_turn, open_and_close_some, open_beside_the_sample]
+)
+@pytest.mark.parametrize("missing", [("g1",), ("g0", "g1")])
+def test_that_a_project_keeps_particles_whose_files_are_missing_when_it_is_saved(
+    session: Session, tmp_path: Path, open_some: Callable[[Session, Path], None], missing: tuple[str, ...]
+) -> None:
+    folder, project = (
+        write_grains(tmp_path, *(f"g{number}.stl" for number in range(4))),
+        tmp_path / "p.regolith",
+    )
+    open_some(session, folder)
+    ids = [entry.id for entry in session.particles]
+    Project.of(session).save(project)
+    for name in missing:
+        (folder / f"{name}.stl").rename(folder / f"{name}.moved")
+    read_project(project).open_in(session, tmp_path)
+    assert [entry.id for entry in session.particles] == [name for name in ids if name[:2] not in missing]
+    assert {each.id[:2] for each in session.unread} == set(missing)
+    Project.of(session).save(project)
+    session.open([folder / "g2.stl"], add=True)
+    added = Project.of(session)
+    for name in missing:
+        (folder / f"{name}.moved").rename(folder / f"{name}.stl")
+    read_project(project).open_in(session, tmp_path)
+    assert [entry.id for entry in session.particles] == ids
+    assert not session.unread
+    added.open_in(session, tmp_path)
+    assert {*ids, "g2_2"} == {entry.id for entry in session.particles}
+
+
+def test_that_what_was_never_a_particle_of_a_project_is_not_kept_as_one(
+    session: Session, tmp_path: Path
+) -> None:
+    folder = write_grains(tmp_path, "g0.stl", "g1.stl")
+    (folder / "broken.stl").write_bytes(b"solid of nothing")
+    session.open([folder])
+    assert not session.unread
+    session.open_recipe(SessionRecipe.of(session.particles, session.choices).recipe, tmp_path)
+    assert [entry.id for entry in session.particles] == ["g0", "g1"]
+    assert not session.unread

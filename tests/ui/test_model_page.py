@@ -1,5 +1,7 @@
 """The page "Shape model": fit, drag the spectrum, draw, judge, hand over."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
@@ -16,7 +18,7 @@ from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
-from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.steps import result_of
 from regolith_studio.studies.population import KEYS
@@ -52,7 +54,7 @@ def rough_sample(n=30, l_max=4):
 
 
 def take(page, sample):
-    page._add(ShapeSource(sample, "rough", "0" * 64))
+    page._add(ShapeSource(sample, "rough", "0" * 64), Path("rough.json"))
     page.source.l_max.setValue(4)
 
 
@@ -394,3 +396,26 @@ def test_that_draws_are_shown_in_units_of_noise_the_farthest_first(shown):
     panel.show_compared(None)
     assert panel.assessment.text() == ""
     assert not panel.table.isVisible()
+
+
+def test_that_a_project_keeps_the_file_of_a_model_and_draws_from_no_other_where_it_is_missing(
+    page, opened, tmp_path
+):
+    page.source.choose_source("ma165")
+    page.fit_model()
+    write_model(tmp_path / "own.json", page._model)
+    page.add_source(tmp_path / "own.json")
+    state = page.state() | {"made": {"fitted": True, "drawn": True}}
+    again = opened()
+    again.restore(state)
+    assert again.source.value()["source"] == state["source"]["source"]
+    assert again.source.source.currentText() == page.source.source.currentText()
+    (tmp_path / "own.json").rename(tmp_path / "moved.json")
+    late = opened()
+    late.restore(state)
+    assert "own.json" in late._context.toast.sentence.text()
+    late.resume(state)
+    assert late._drawn is late._fitted is None
+    assert late.state() == state
+    late.source.choose_source("ma165")
+    assert late.state()["source"]["source"] == "ma165"

@@ -8,7 +8,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog
 
-from regolith_studio.imaging.segmentation.segment import preview, segment
+from regolith_studio.imaging.segmentation.label_edits import LabelEdit
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings, preview, segment
 from regolith_studio.imaging.volume import sample_volume
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.readers.volumes.read import read_volume
@@ -205,3 +206,22 @@ def test_that_the_scan_of_a_project_is_opened_again_and_a_changed_one_is_not(pag
     page.restore(state)
     wait(lambda: page.scan is not None)
     assert page.opening.restore(state["scan"] | {"fingerprint": "of another"}) is False
+
+
+def test_that_a_project_keeps_the_corrections_of_a_scan_that_has_moved(page, tmp_path, wait):
+    here, there = tmp_path / "scan.npy", tmp_path / "moved.npy"
+    np.save(here, np.ascontiguousarray(sample_volume("grey").array[:60, :50, :40].T))
+    page.opening.read(VolumeInput(here, 2.0, kind="grey"))
+    wait(lambda: page.scan is not None)
+    page.corrections.take_from(SegmentationSettings(edits=(LabelEdit("fill", ((4, 5, 6),)),)))
+    state = page.state()
+    page.opening.close()
+    page.opening.scan = None
+    here.rename(there)
+    page.restore(state)
+    assert "moved or changed" in page._context.toast.sentence.text()
+    assert page.corrections.state.edits == ()
+    assert page.state() == state
+    page.opening.read(VolumeInput(there, 2.0, kind="grey"))
+    wait(lambda: page.scan is not None)
+    assert page.state() == state | {"scan": state["scan"] | {"file": str(there)}}

@@ -1,5 +1,6 @@
 """Page "Shape model": controls, spectrum with a drawn particle, gallery and evaluation."""
 
+import itertools
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -132,13 +133,27 @@ class SourceBox:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._files: dict[str, ShapeSource] = {}
+        self.paths: dict[str, str] = {}
+        """Of all files by their keys, also of those of a project that could not be read."""
 
-    def add(self, source: ShapeSource) -> str:
+    def add(self, source: ShapeSource, path: Path) -> str:
         """Add the content of a file; returns its key."""
         known = {each.sha256: key for key, each in self._files.items()}
-        key = known.get(source.sha256, f"file:{len(self._files) + 1}")
-        self._files[key] = source
+        numbers = (f"file:{number}" for number in itertools.count(1))
+        key = known.get(source.sha256) or next(each for each in numbers if each not in self.paths)
+        self._files[key], self.paths[key] = source, str(path.absolute())
         return key
+
+    def restore(self, paths: Mapping[str, str]) -> list[str]:
+        """Read the files of a project again; returns why others could not be read, in sentences."""
+        problems = []
+        self.paths |= paths
+        for key, path in paths.items():
+            try:
+                self._files[key] = read_shape_source(path)
+            except RegolithError as error:
+                problems.append(str(error))
+        return problems
 
     def labels(self) -> dict[str, str]:
         count = len(self._session.particles)
@@ -235,6 +250,9 @@ class ModelPage(PageWidget):
         self._drawn: GenerationResult | None = None
         self._drawn_for: tuple[object, ...] | None = None
         self._live_seed = 0
+        self._unread: tuple[str, dict[str, bool]] | None = (
+            None  # source of a project, and what was made of it
+        )
 
     def build(self) -> None:
         views, bindings, surroundings = (
@@ -279,17 +297,29 @@ class ModelPage(PageWidget):
 
     def state(self) -> dict[str, Any]:
         made = {"fitted": self._fitted is not None, "drawn": self._drawn is not None}
-        return self.settings() | {"made": made if made["fitted"] else {}}
+        state = self.settings() | {"made": made if made["fitted"] else {}}
+        if self._sources.paths:
+            state["files"] = dict(self._sources.paths)
+        if self._unread is not None:
+            state |= {"source": state["source"] | {"source": self._unread[0]}, "made": self._unread[1]}
+        return state
 
     def resume(self, state: Mapping[str, Any]) -> None:
         made = state.get("made") or {}
         self._show_sources()
+        if self._unread is not None:
+            return
         if made.get("drawn"):
             self.draw()
         elif made.get("fitted"):
             self.fit_model()
 
     def restore(self, state: Mapping[str, Any]) -> None:
+        files = state.get("files")
+        if isinstance(files, Mapping):
+            for problem in self._sources.restore({str(key): str(path) for key, path in files.items()}):
+                self._context.toast.problem(problem)
+            self._show_sources()
         for name, panel in (
             ("source", self.source),
             ("drawing", self.drawing),
@@ -297,6 +327,9 @@ class ModelPage(PageWidget):
         ):
             if isinstance(state.get(name), Mapping):
                 panel.setValue(state[name])
+        chosen = str(dict(state.get("source") or {}).get("source"))
+        is_unread = chosen in self._sources.paths and chosen not in self._sources.labels()
+        self._unread = (chosen, state.get("made") or {}) if is_unread else None
 
     def on_close(self) -> None:
         self.live.frame.view.release()
@@ -312,7 +345,7 @@ class ModelPage(PageWidget):
 
     def add_source(self, path: Path) -> None:
         """Select a fit, model or card in a file."""
-        self._try(lambda: self._add(read_shape_source(str(path))))
+        self._try(lambda: self._add(read_shape_source(str(path)), path))
 
     def open_path(self, path: Path) -> None:
         self.add_source(path)
@@ -505,6 +538,10 @@ class ModelPage(PageWidget):
         self.source.set_sources(self._sources.labels())
         self._show_source()
 
+    def _on_source(self) -> None:
+        self._unread = None
+        self._show_source()
+
     def _show_source(self) -> None:
         kind = self._sources.kind(self.source.value()["source"])
         self.source.show_kind(kind.brings_model, kind.max_degree, kind.words)
@@ -529,8 +566,8 @@ class ModelPage(PageWidget):
         content = self._fitted.source.content if self._fitted else None
         return content if isinstance(content, Sample) else None
 
-    def _add(self, source: ShapeSource) -> None:
-        key = self._sources.add(source)
+    def _add(self, source: ShapeSource, path: Path) -> None:
+        key = self._sources.add(source, path)
         self.source.set_sources(self._sources.labels())
         self.source.choose_source(key)
         self._show_source()
@@ -557,7 +594,7 @@ class ModelPage(PageWidget):
         self._tabs.setMinimumHeight(bar + self.gallery.minimumSizeHint().height())
 
     def _connect(self) -> None:
-        self.source.sourceChanged.connect(lambda _: self._show_source())
+        self.source.sourceChanged.connect(lambda _: self._on_source())
         self.source.openRequested.connect(self.open_source)
         self.source.fitRequested.connect(self.fit_model)
         for panel in (self.source, self.drawing):

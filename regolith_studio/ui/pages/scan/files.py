@@ -159,8 +159,8 @@ class VolumeOpening(QObject):
         if fingerprint(volume.path) != state.get("fingerprint"):
             self._context.toast.problem(
                 tr(
-                    "The scan {path} has been moved or changed since the project was saved: open it again; "
-                    "its corrections are left out.",
+                    "The scan {path} has been moved or changed since the project was saved. Open it from its "
+                    "new place: the project keeps its corrections until then.",
                     path=volume.path,
                 )
             )

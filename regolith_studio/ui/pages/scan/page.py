@@ -130,6 +130,11 @@ def compared_heights(h: float) -> tuple[float, ...]:
 BOX = Brush(ERASER, 1.0, "box")
 
 
+def _settings_in(state: Mapping[str, Any]) -> GrainSettings:
+    """The settings in the state of the page."""
+    return GrainSettings.from_document({key: value for key, value in state.items() if key != "scan"})
+
+
 class ScanPage(PageWidget):
     """Opens a volume, previews its grains after every change, and segments all of it on request."""
 
@@ -139,8 +144,8 @@ class ScanPage(PageWidget):
         self.setAcceptDrops(True)
         self._context = context
         self._found_with: SegmentationSettings | None = None
-        self._restored: Path | None = None
-        self._find_again = False
+        self._to_restore: dict[str, Any] = {}  # what a project says of a scan that is not open yet
+        self._restoring = False
         self._suspected: Segmentation | None = None
 
     def build(self) -> None:
@@ -187,19 +192,24 @@ class ScanPage(PageWidget):
         }
 
     def state(self) -> dict[str, Any]:
-        scan = self.opening.state() | ({"found": True} if self.grains is not None else {})
-        return self._settings().as_document() | ({"scan": scan} if self.scan is not None else {})
+        document = self._settings().as_document()
+        if self.scan is not None:
+            scan = self.opening.state() | ({"found": True} if self.grains is not None else {})
+            return document | {"scan": scan}
+        return document | self._to_restore
 
     def restore(self, state: Mapping[str, Any]) -> None:
         scan = state.get("scan")
         try:
-            self._use(GrainSettings.from_document({k: v for k, v in state.items() if k != "scan"}))
+            self._use(_settings_in(state))
         except RegolithError:
             return
+        self._to_restore, self._restoring = {}, False
         if isinstance(scan, Mapping):
+            self._to_restore = dict(state)
             named = {key: value for key, value in scan.items() if key != "found"}
             if self.opening.restore(named):
-                self._restored, self._find_again = self.opening.wanted.path, bool(scan.get("found"))
+                self._restoring = True
                 return
         self.corrections.forget()  # corrections belong to one scan
 
@@ -271,14 +281,24 @@ class ScanPage(PageWidget):
         self._go_on_with_project()
 
     def _go_on_with_project(self) -> None:
-        """Find the grains of the scan of a project again; its corrections are of no other scan."""
-        restored, self._restored = self._restored, None
-        again, self._find_again = self._find_again, False
-        if restored is not None and restored != self.opening.given.path:
-            self.corrections.forget()
-        elif again and self.scan is not None:
-            if self.scan.volume.kind == "labels":
+        """Find the grains of the scan of a project again; its corrections are of no other scan.
+
+        A scan that had moved is known by its fingerprint when it is opened from its new place.
+        """
+        state, restoring = self._to_restore, self._restoring
+        self._to_restore, self._restoring = {}, False
+        if not state or self.scan is None:
+            return
+        if self.opening.fingerprint != state["scan"].get("fingerprint"):
+            if restoring:
+                self.corrections.forget()
+            return
+        if not restoring:
+            self._use(_settings_in(state))
+            if self.opening.wanted_region != self.opening.region:  # it is being read again
+                self._to_restore, self._restoring = state, True
                 return
+        if state["scan"].get("found") and self.scan.volume.kind != "labels":
             self.find_grains()
 
     def _on_looked(self) -> None:
