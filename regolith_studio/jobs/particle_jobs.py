@@ -9,7 +9,7 @@ import numpy as np
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS
 from regolith_studio.descriptors.describe import Descriptors, describe, description_steps, relative_errors
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import GeometryError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, inspect
@@ -228,7 +228,14 @@ def fit_one(mesh: Mesh, request: FitRequest = FitRequest()) -> Steps:
 def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:
     """The fit's surface cut at `l_max`; returns a :class:`Mesh` in the particle's frame."""
     yield Started(N_("Drawing the fit"))
-    return reconstruct(fit, l_max, level=level)
+    try:
+        return reconstruct(fit, l_max, level=level)
+    except GeometryError as error:
+        sentence = N_(
+            "The expansion up to l = {degree} has negative radii and bounds no solid: choose another l_max, "
+            "star point or reference."
+        )
+        raise GeometryError(Message(sentence, degree=l_max)) from error
 
 
 def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> Steps:

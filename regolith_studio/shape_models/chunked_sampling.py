@@ -16,6 +16,7 @@ import numpy as np
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.io.machine_memory import check_memory
+from regolith_studio.messages import N_, Message
 from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.realizations import Realizations, Scale, acceptable, positive_rows
 from regolith_studio.shape_models.sample import sized
@@ -192,7 +193,8 @@ def accepted(
         kept.append(rows[good])
         count += len(good)
         rejected += len(rows) - len(good)
-    raise InputError(
-        f"Of {MAX_ROUNDS * CHUNK} particles that the model drew only {count} have a positive radius and the "
-        "size asked for: widen the range of sizes, lower l_max, or take a model of log r."
+    sentence = N_(
+        "Of {total} particles that the model drew only {count} have a positive radius and the size asked "
+        "for: widen the range of sizes, lower l_max, or take a model of log r."
     )
+    raise InputError(Message(sentence, total=MAX_ROUNDS * CHUNK, count=count))

@@ -16,6 +16,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import ShCoefficients, degrees
 from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
+from regolith_studio.messages import N_, Message
 from regolith_studio.shape_models.realizations import EXPONENTIAL_DEGREE, Scale
 
 MIN_PARTICLES = 2
@@ -78,7 +79,7 @@ class Sample:
                 f"l_max = {degrees[0]} or fit them again."
             )
         if not particles:
-            raise InputError(f"A model needs at least {MIN_PARTICLES} particles, got none.")
+            raise InputError(_too_few(0))
         return cls(np.stack([each.values for each in particles]), tuple(names), unit)
 
     def __reduce__(self) -> tuple[Callable[..., "Sample"], tuple[Any, ...]]:
@@ -135,11 +136,12 @@ class Sample:
         if len(keep) == len(self):
             return self
         if len(keep) < MIN_PARTICLES:
-            raise InputError(
-                f"Only {len(keep)} of {len(self)} particles have a positive radius everywhere at l_max = "
-                f"{self.l_max}, and a model needs {MIN_PARTICLES}: choose a lower "
-                "l_max or fit with an ellipsoid."
+            sentence = N_(
+                "Only {count} of {total} particles have a positive radius everywhere at l_max = {degree}, "
+                "and a model needs {least}: choose a lower l_max or fit with an ellipsoid."
             )
+            values = {"count": len(keep), "total": len(self), "degree": self.l_max, "least": MIN_PARTICLES}
+            raise InputError(Message(sentence, **values))
         return self.chosen(keep)
 
     def halves(self, seed: int) -> tuple[IntArray, IntArray]:
@@ -150,23 +152,29 @@ class Sample:
 
 def _check(rows: FloatArray, names: tuple[str, ...]) -> None:
     if len(rows) < MIN_PARTICLES:
-        raise InputError(f"A model needs at least {MIN_PARTICLES} different particles, got {len(rows)}.")
+        raise InputError(_too_few(len(rows)))
     broken = np.flatnonzero(~np.isfinite(rows).all(axis=1))
     if len(broken):
-        raise InputError(
-            f"{len(broken)} of {len(rows)} particles have coefficients that are not finite numbers, the "
-            f"first is {names[broken[0]]!r}: leave them out or fit them again."
+        sentence = N_(
+            "{count} of {total} particles have coefficients that are not finite numbers, the first is "
+            "{name}: leave them out or fit them again."
         )
+        raise InputError(Message(sentence, count=len(broken), total=len(rows), name=repr(names[broken[0]])))
     flat = np.flatnonzero(~(rows[:, 0] > 0))
     if len(flat):
-        raise InputError(
-            f"{len(flat)} of {len(rows)} particles have a mean radius that is not positive, the first is "
-            f"{names[flat[0]]!r}: leave them out."
+        sentence = N_(
+            "{count} of {total} particles have a mean radius that is not positive, the first is {name}: "
+            "leave them out."
         )
+        raise InputError(Message(sentence, count=len(flat), total=len(rows), name=repr(names[flat[0]])))
     if np.ptp(rows, axis=0).max() <= IDENTICAL * rows[:, 0].mean():
-        raise InputError(
-            f"All {len(rows)} particles are the same; a model needs at least two different ones."
-        )
+        sentence = N_("All {count} particles are the same; a model needs at least two different ones.")
+        raise InputError(Message(sentence, count=len(rows)))
+
+
+def _too_few(count: int) -> Message:
+    sentence = N_("A model needs at least {least} different particles, got {count}.")
+    return Message(sentence, least=MIN_PARTICLES, count=count)
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,7 +100,7 @@ class DialogRuns(QObject, Generic[Dialog]):
         self.show_tasks()
 
     def _failed(self, failure: Failed) -> None:
-        self._end(failure.sentence)
+        self._end(translate(failure.sentence))
         self._toast.problem(failure.sentence, failure.details)
 
     def _end(self, sentence: str, done: bool = False) -> None:

@@ -256,13 +256,20 @@ class Commands(QObject):
         self._remember_open()
         self._try(lambda: self._session.open(paths, unit, add=answer == ADD, convention=convention))
 
-    def adopt(self, particles: Sequence[Particle], origin: ParticleSource) -> bool:
+    def ask_before_making(self) -> str:
+        """Whether particles that a page is about to make are added or replace the open ones; or nothing.
+
+        Asked where some of the open ones were read from files, and before the work: keys that are typed while
+        it runs must not answer the question.
+        """
+        return self._add_or_replace(SampleSource, VolumeSource, VirtualSource)
+
+    def adopt(self, particles: Sequence[Particle], origin: ParticleSource, answer: str = "") -> bool:
         """Open particles that a page has made; whether the user has agreed.
 
-        Asks whether they are added or replace the open ones where some of those were read from files.
+        ``answer``: of :meth:`ask_before_making`; asked now if left out.
         """
-        made_here = (SampleSource, VolumeSource, VirtualSource)
-        answer = self._add_or_replace(*made_here)
+        answer = answer or self.ask_before_making()
         if answer:
             self._remember_open()
             self._session.adopt(particles, add=answer == ADD, origin=origin)

@@ -452,6 +452,14 @@
         <translation>Eine Mischung von Komponenten, jede mit eigenen Größen und eigenem Spektrum, im Radius selbst.</translation>
     </message>
     <message>
+        <source>A mixture tells parts by their spectra and needs l_max of at least 1, got {degree}.</source>
+        <translation>Eine Mischung unterscheidet Teile nach ihren Spektren und braucht l_max von mindestens 1, nicht {degree}.</translation>
+    </message>
+    <message>
+        <source>A model needs at least {least} different particles, got {count}.</source>
+        <translation>Ein Modell braucht mindestens {least} verschiedene Partikel, nicht {count}.</translation>
+    </message>
+    <message>
         <source>A of the hull / A of its ellipsoid (after Kuo and Freeman)</source>
         <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
     </message>
@@ -610,6 +618,10 @@
     <message>
         <source>All weighted descriptors are met within 0.1 %.</source>
         <translation>Alle gewichteten Deskriptoren sind auf 0,1 % getroffen.</translation>
+    </message>
+    <message>
+        <source>All {count} particles are the same; a model needs at least two different ones.</source>
+        <translation>Alle {count} Partikel sind gleich; ein Modell braucht mindestens zwei verschiedene.</translation>
     </message>
     <message>
         <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</source>
@@ -3912,6 +3924,10 @@
         <translation>Von {run}</translation>
     </message>
     <message>
+        <source>Of {total} particles that the model drew only {count} have a positive radius and the size asked for: widen the range of sizes, lower l_max, or take a model of log r.</source>
+        <translation>Von {total} Partikeln, die das Modell gezogen hat, haben nur {count} einen positiven Radius und die verlangte Größe: Erweitern Sie den Größenbereich, senken Sie l_max oder nehmen Sie ein Modell von log r.</translation>
+    </message>
+    <message>
         <source>On this computer or on a cluster</source>
         <translation>Auf diesem Rechner oder auf einem Cluster</translation>
     </message>
@@ -3950,6 +3966,10 @@
     <message>
         <source>Only the overlap has a weight.</source>
         <translation>Nur die Überdeckung hat ein Gewicht.</translation>
+    </message>
+    <message>
+        <source>Only {count} of {total} particles have a positive radius everywhere at l_max = {degree}, and a model needs {least}: choose a lower l_max or fit with an ellipsoid.</source>
+        <translation>Nur {count} von {total} Partikeln haben bei l_max = {degree} überall einen positiven Radius, und ein Modell braucht {least}: Wählen Sie ein kleineres l_max oder passen Sie mit einem Ellipsoid an.</translation>
     </message>
     <message>
         <source>Only {count} of {total} sections through the heap have two straight flanks.</source>
@@ -6122,6 +6142,10 @@
     <message>
         <source>The exact method keeps {kept}; weighed: {prices}.</source>
         <translation>Die exakte Methode hält ein: {kept}; gewichtet: {prices}.</translation>
+    </message>
+    <message>
+        <source>The expansion up to l = {degree} has negative radii and bounds no solid: choose another l_max, star point or reference.</source>
+        <translation>Die Entwicklung bis l = {degree} hat negative Radien und begrenzt keinen Körper: Wählen Sie ein anderes l_max, einen anderen Sternpunkt oder Bezug.</translation>
     </message>
     <message>
         <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
@@ -8792,6 +8816,14 @@
         <translation>{count} von {total}</translation>
     </message>
     <message>
+        <source>{count} of {total} particles have a mean radius that is not positive, the first is {name}: leave them out.</source>
+        <translation>{count} von {total} Partikeln haben keinen positiven mittleren Radius, das erste ist {name}: Lassen Sie sie weg.</translation>
+    </message>
+    <message>
+        <source>{count} of {total} particles have coefficients that are not finite numbers, the first is {name}: leave them out or fit them again.</source>
+        <translation>{count} von {total} Partikeln haben Koeffizienten, die keine endlichen Zahlen sind, das erste ist {name}: Lassen Sie sie weg oder passen Sie sie neu an.</translation>
+    </message>
+    <message>
         <source>{count} of {total} particles measured</source>
         <translation>{count} von {total} Partikeln gemessen</translation>
     </message>
@@ -9142,6 +9174,10 @@
     <message>
         <source>{number}. Voxels painted at {place}</source>
         <translation>{number}. Voxel gemalt bei {place}</translation>
+    </message>
+    <message>
+        <source>{n} particles are enough for 1 to {most} parts, got {count}: four particles are needed for each.</source>
+        <translation>{n} Partikel reichen für 1 bis {most} Teile, nicht für {count}: Für jeden werden vier Partikel gebraucht.</translation>
     </message>
     <message>
         <source>{parts} parts, {count} facets</source>

@@ -64,7 +64,7 @@ def test_that_two_groups_of_different_degree_are_refused_with_the_degree_to_cut_
 
 
 def test_that_no_particles_are_refused() -> None:
-    with pytest.raises(InputError, match="got none"):
+    with pytest.raises(InputError, match="got 0"):
         Sample.of([])
 
 

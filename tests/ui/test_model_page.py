@@ -1,6 +1,7 @@
 """The page "Shape model": fit, drag the spectrum, draw, judge, hand over."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,9 +16,12 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.synthesis import level_for
-from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes
+from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.session import Session
 from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.steps import result_of
@@ -419,3 +423,62 @@ def test_that_a_project_keeps_the_file_of_a_model_and_draws_from_no_other_where_
     assert late.state() == state
     late.source.choose_source("ma165")
     assert late.state()["source"]["source"] == "ma165"
+
+
+class HoldingRunner(InlineRunner):
+    """Keeps fits until they are let go."""
+
+    def __init__(self):
+        super().__init__()
+        self.held = []
+
+    def submit(self, job, listener, queue=""):
+        if "fit" not in queue:
+            return super().submit(job, listener, queue)
+        self.held.append(lambda: InlineRunner.submit(self, job, listener, queue))
+        return SimpleNamespace(cancel=lambda: None)
+
+
+def test_that_the_card_of_the_draws_says_that_a_model_is_being_fitted_and_why_it_was_not(page_of, speaking):
+    speaking("de")
+    runner = HoldingRunner()
+    page = page_of(PAGE, 1100, 760, Session(runner, Choices(level=2)))
+    take(page, rough_sample())
+    page.drawing.number.setValue(4)
+    page.draw()
+    assert page.drawing.card.record.state is ResultState.RUNNING
+    runner.held.pop()()
+    assert page.drawing.card.record.state is ResultState.CURRENT
+    assert len(page._drawn.draws) == 4
+    few = rough_sample(4)
+    page._add(ShapeSource(few, "few", "1" * 64), Path("few.json"))
+    page.source.model.setCurrentIndex(page.source.model.findData("gaussian_mixture"))
+    page.source.forms["gaussian_mixture"].setValue({"n_components": 3})
+    page.draw()
+    page.fit_model()
+    assert page.drawing.card.record.state is not ResultState.RUNNING
+    page.draw()
+    runner.held.pop()()
+    record = page.drawing.card.record
+    assert record.state is ResultState.FAILED
+    assert translate(record.note).startswith("4 Partikel reichen für 1 bis 1 Teile, nicht für 3")
+
+
+def test_that_add_or_replace_is_asked_before_particles_are_made(page, monkeypatch):
+    order, answers = [], ["", "replace"]
+    take(page, rough_sample())
+    page.drawing.number.setValue(3)
+    page.draw()
+    commands, submit = page.context.commands, InlineRunner.submit
+    monkeypatch.setattr(commands, "ask_before_making", lambda: order.append("asked") or answers.pop(0))
+    monkeypatch.setattr(
+        InlineRunner,
+        "submit",
+        lambda self, job, *more: order.append(job.function) or submit(self, job, *more),
+    )
+    page.adopt()
+    assert order == ["asked"]
+    page.adopt()
+    assert order[1:3] == ["asked", make_particles]
+    assert order.count("asked") == 2
+    assert len(page.session.particles) == 3

@@ -22,7 +22,7 @@ from scipy.special import logsumexp
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.sample import Sample
@@ -120,9 +120,8 @@ def chosen_mixture(
     parts by.
     """
     if settings.l_max < 1:
-        raise InputError(
-            f"A mixture tells parts by their spectra and needs l_max of at least 1, got {settings.l_max}."
-        )
+        sentence = N_("A mixture tells parts by their spectra and needs l_max of at least 1, got {degree}.")
+        raise InputError(Message(sentence, degree=settings.l_max))
     fits = [_best_start(sizes, powers, k, settings) for k in _numbers(len(sizes), settings)]
     criterion = [fit.bic(len(sizes)) for fit in fits]
     best = fits[int(np.argmin(criterion))]
@@ -134,10 +133,10 @@ def _numbers(n: int, settings: MixtureSettings) -> list[int]:
     if settings.n_components == 0:
         return list(range(1, max(1, min(settings.max_components, most)) + 1))
     if not 1 <= settings.n_components <= most:
-        raise InputError(
-            f"{n} particles are enough for 1 to {most} parts, got {settings.n_components}: four particles "
-            "are needed for each."
+        sentence = N_(
+            "{n} particles are enough for 1 to {most} parts, got {count}: four particles are needed for each."
         )
+        raise InputError(Message(sentence, n=n, most=most, count=settings.n_components))
     return [settings.n_components]
 
 

@@ -45,7 +45,7 @@ What a page can rely on
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
   ``choose(...)``, ``dataset_folder`` and ``runs_folder`` (written last).
   ``context.commands.adopt(particles, origin)`` opens particles made by a page: they replace or join the open
-  ones, and are measured and shown everywhere.
+  ones, as ``context.commands.ask_before_making()`` has answered, and are measured and shown everywhere.
 * **Refreshing**: ``context.bindings.refresh("particles choices", action, ("l_max",))`` calls `action` soon
   after these events, and now; after a change of choices only if one of the fields named has changed.
   ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;

@@ -54,7 +54,7 @@ from regolith_studio.ui.layout import (
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.panels import AssessmentPanel, CoarseningPanel, FitPanel, LossPanel
 from regolith_studio.ui.pages.explore.plots import PlotArea
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.fields import ChoiceBox, whole_field
 from regolith_studio.ui.widgets.labels import heading, hint_label
@@ -411,7 +411,7 @@ class ExplorePage(PageWidget):
             tr("Measuring distances"),
             job,
             show,
-            failed=lambda failure: refuse(failure.sentence),
+            failed=lambda failure: refuse(translate(failure.sentence)),
             queue="distances",
             repeats=True,
             after_running=True,

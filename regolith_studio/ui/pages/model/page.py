@@ -270,6 +270,7 @@ class ModelPage(PageWidget):
         self.evaluation = EvaluationPanel()
         self.judging = RunController(self._context, self.evaluation.card, "evaluate", self.evaluate)
         self.draws = RunController(self._context, self.drawing.card, "draw", self.draw)
+        self.fitting = RunController(self._context, self.drawing.card, "fit", None)
         self._place()
         self._connect()
         bindings.refresh("particles", self._show_sources)
@@ -385,11 +386,17 @@ class ModelPage(PageWidget):
                 )
             )
             return
+        answer = self._context.commands.ask_before_making()
+        if not answer:
+            return
         level = level_for(draws.l_max)
         origin = VirtualSource.of(self._drawn, self._fitted, level)
         job = Job(make_particles, (draws, self._drawn.model, origin.population.name, level))
         self._context.start(
-            tr("Making virtual particles"), job, lambda made: self._take_over(made, origin), queue="adopt"
+            tr("Making virtual particles"),
+            job,
+            lambda made: self._take_over(made, origin, answer),
+            queue="adopt",
         )
 
     def save_model(self) -> None:
@@ -407,16 +414,24 @@ class ModelPage(PageWidget):
 
     # --- work ----------------------------------------------------------------------------------
 
-    def _fit(self, then: Callable[[], None] = lambda: None) -> None:
+    def _fit(self, then: Callable[[], None] | None = None) -> None:
+        """Fit the model; where something follows, the card of the drawn particles says how far it is."""
         origin, fitted_to = self._sources.origin(self.source.value()["source"]), self._to_fit()
         job = Job(fit_shapes, (origin, self._request(), bool(self.source.value()["half"])))
 
         def show(fitted: ModelFitResult) -> None:
             self._fitted_to = fitted_to
             self._show_fitted(fitted)
-            then()
+            if then is not None:
+                then()
 
-        self._context.start(tr("Fitting a model of shapes"), job, show, queue="fit")
+        title = tr("Fitting a model of shapes")
+        if then is None:
+            if self.fitting.running:
+                self.fitting.forget()
+            self._context.start(title, job, show, queue="fit")
+        else:
+            self.fitting.start(title, job, show)
 
     def _to_fit(self) -> tuple[object, ...]:
         """What a fit depends on; drawn particles that are open count as those that they were drawn from."""
@@ -501,7 +516,7 @@ class ModelPage(PageWidget):
             tr("Drawing particles"),
             Job(draw_live, (self._model, self._live_seed)),
             lambda mesh: self._show_live(fitted, mesh, again),
-            failed=lambda failure: self.live.frame.set_texts(tr(DRAWN), failure.sentence),
+            failed=lambda failure: self.live.frame.set_texts(tr(DRAWN), translate(failure.sentence)),
             queue="live",
             repeats=True,
             after_running=True,
@@ -528,8 +543,8 @@ class ModelPage(PageWidget):
         finally:
             self.drawing.show_names(getattr(self._model, "names", ()))
 
-    def _take_over(self, particles: tuple[Particle, ...], origin: VirtualSource) -> None:
-        if self._context.commands.adopt(particles, origin):
+    def _take_over(self, particles: tuple[Particle, ...], origin: VirtualSource, answer: str) -> None:
+        if self._context.commands.adopt(particles, origin, answer):
             self._context.toast.note(tr("{count:,} virtual particles are open now.", count=len(particles)))
 
     # --- the state of the controls -------------------------------------------------------------

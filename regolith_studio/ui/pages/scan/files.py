@@ -291,14 +291,17 @@ class ParticleMaking(QObject):
         if labels is None or scan is None:
             self._context.toast.note(tr("Find the grains first."))
             return
+        answer = self._context.commands.ask_before_making()
+        if not answer:
+            return
         entry = entry_of(self._opening.given, settings)
         grey = scan.volume if scan.volume.kind == "grey" else None
         job = Job(extract_labels, (labels, settings.extraction, self._opening.given.path, grey))
         self._context.start(
-            tr("Making particles"), job, lambda found: self._adopt(found, entry), queue="grains"
+            tr("Making particles"), job, lambda found: self._adopt(found, entry, answer), queue="grains"
         )
 
-    def _adopt(self, extraction: Extraction, entry: VolumeEntry) -> None:
+    def _adopt(self, extraction: Extraction, entry: VolumeEntry, answer: str) -> None:
         if not extraction.found:
             self._context.toast.problem(
                 tr(
@@ -310,7 +313,7 @@ class ParticleMaking(QObject):
             )
             return
         origin = VolumeSource.of(entry, extraction.particles)
-        if not self._context.commands.adopt(extraction.particles, origin):
+        if not self._context.commands.adopt(extraction.particles, origin, answer):
             return
         summary = translate(extraction.summary)
         self._context.toast.note(summary)
