@@ -158,31 +158,6 @@ def validate(
     raise typer.Exit(1 if problems else 0)
 
 
-@app.command("list")
-def list_(
-    root: Annotated[Path, typer.Argument(metavar="FOLDER", help="A folder with datasets below it.")],
-    words: Annotated[
-        str, typer.Option("--filter", help="List only entries that contain these words.", metavar="WORDS")
-    ] = "",
-    json: Json = False,
-) -> None:
-    """List the datasets below a folder, with their exports and simulations."""
-    from regolith_studio.dataset.catalog import provenance_tree
-    from regolith_studio.jobs.dataset_jobs import list_library
-
-    tree = provenance_tree(entry for entry in run_with_progress(list_library(root)) if entry.matches(words))
-    names = ("kind", "name", "folder", "sha256", "detail", "problem")
-    if json:
-        rows = [
-            [{key: str(getattr(one, key)) for key in names} for one in (top, *below)] for top, below in tree
-        ]
-        print_json([top | {"from_it": below} for top, *below in rows])
-        return
-    for top, below in tree:
-        for indent, entry in [("", top), *(("    ", one) for one in below)]:
-            typer.echo(f"{indent}{entry.name}: {entry.problem or entry.detail}\n{indent}  {entry.folder}")
-
-
 @app.command("sample")
 def sample(
     folder: DatasetFolder,

@@ -8,7 +8,6 @@ from itertools import count
 from pathlib import Path
 
 from regolith_studio.dataset.build import build_dataset, singleton_class
-from regolith_studio.dataset.catalog import CatalogEntry, scan_catalog
 from regolith_studio.dataset.dataset import Dataset, Provenance
 from regolith_studio.dataset.export import (
     Exporter,
@@ -426,30 +425,3 @@ def validate_dataset_folder(folder: Path) -> Steps:
     """Returns the problems of the folder, one sentence each."""
     yield Started(N_("Checking the dataset"))
     return tuple(validate_dataset(folder))
-
-
-def list_library(root: Path, results: Path | None = None) -> Steps:
-    """Datasets, exports and results below a folder; partial results are single ones, the result all.
-
-    ``results``: where simulations are kept if not below `root`; those of its datasets are listed too.
-    """
-    yield Started(N_("Searching for datasets"))
-    entries: list[CatalogEntry] = []
-    for entry in _entries(root, results):
-        entries.append(entry)
-        yield Partial(entry)
-        yield Progress(len(entries), 0, entry.name)
-    return tuple(entries)
-
-
-def _entries(root: Path, results: Path | None) -> Iterator[CatalogEntry]:
-    seen, known = set(), set()
-    for entry in scan_catalog(root):
-        seen.add(entry.folder)
-        known.add(entry.sha256)
-        yield entry
-    if results is None or not results.is_dir():
-        return
-    for entry in scan_catalog(results):
-        if entry.kind == "result" and entry.sha256 in known - {""} and entry.folder not in seen:
-            yield entry

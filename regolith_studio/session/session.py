@@ -55,7 +55,6 @@ class Session:
     - ``particles``, ``results``: all that is open, and what has been computed of the selected particle.
     - ``left_out``: sentences on what was not opened with the particles, such as the rest of a large archive.
     - ``unread``: particles of the project or recipe whose files could not be read: saving keeps them.
-    - ``runs_folder``: folder of the simulations.
     - ``dataset_request``: dataset settings of a recipe of this session; ``None`` before representatives are
       chosen.
     """
@@ -74,7 +73,6 @@ class Session:
         self._studied: dict[Kind, Choices] = {}
         self._dataset_folder: Path | None = None
         self._opened_request: DatasetRequest | None = None
-        self.runs_folder: Path | None = None
         self.dataset_request: DatasetRequest | None = None
 
     # --- reading -------------------------------------------------------------------------------

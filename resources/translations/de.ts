@@ -1032,10 +1032,6 @@
         <translation>Wählen Sie einen Datensatz, um den gefüllten Zylinder zu sehen.</translation>
     </message>
     <message>
-        <source>Choose a folder: the datasets below it are listed here, with what was exported and simulated from each.</source>
-        <translation>Wählen Sie einen Ordner: die Datensätze darin werden hier aufgeführt, mit allem, was aus ihnen exportiert und simuliert wurde.</translation>
-    </message>
-    <message>
         <source>Choose a recipe file.</source>
         <translation>Wählen Sie eine Rezeptdatei.</translation>
     </message>
@@ -2228,14 +2224,6 @@
         <translation>Füllgeschwindigkeit</translation>
     </message>
     <message>
-        <source>Filter</source>
-        <translation>Filter</translation>
-    </message>
-    <message>
-        <source>Filter of the library</source>
-        <translation>Filter der Bibliothek</translation>
-    </message>
-    <message>
         <source>Filter of the table</source>
         <translation>Filter der Tabelle</translation>
     </message>
@@ -2418,10 +2406,6 @@
     <message>
         <source>Folder with {names}</source>
         <translation>Ordner mit {names}</translation>
-    </message>
-    <message>
-        <source>Folder …</source>
-        <translation>Ordner …</translation>
     </message>
     <message>
         <source>Folder:</source>
@@ -3112,10 +3096,6 @@
         <translation>Stufen</translation>
     </message>
     <message>
-        <source>Library</source>
-        <translation>Bibliothek</translation>
-    </message>
-    <message>
         <source>Licence: {licence}. Libraries with other terms for those who pass them on: {others}, FFTW in the wheels of pyshtools (GPL-2.0-or-later).</source>
         <translation>Lizenz: {licence}. Bibliotheken mit anderen Bedingungen für deren Weitergabe: {others}, FFTW in den Wheels von pyshtools (GPL-2.0-or-later).</translation>
     </message>
@@ -3570,10 +3550,6 @@
     <message>
         <source>Multi-sphere (x y z r)</source>
         <translation>Multisphere (x y z r)</translation>
-    </message>
-    <message>
-        <source>Name</source>
-        <translation>Name</translation>
     </message>
     <message>
         <source>Name of the dataset</source>
@@ -4720,10 +4696,6 @@
         <translation>Bezugsfläche</translation>
     </message>
     <message>
-        <source>Refresh</source>
-        <translation>Aktualisieren</translation>
-    </message>
-    <message>
         <source>Region of interest</source>
         <translation>Auszuwertender Bereich</translation>
     </message>
@@ -5048,10 +5020,6 @@
         <translation>&amp;Kleinere Schrift</translation>
     </message>
     <message>
-        <source>SHA-256 of the dataset: {hash} …</source>
-        <translation>SHA-256 des Datensatzes: {hash} …</translation>
-    </message>
-    <message>
         <source>SI; coarse graining applied</source>
         <translation>SI; mit Coarse-Graining</translation>
     </message>
@@ -5272,10 +5240,6 @@
         <translation>Befehle und Tasten suchen</translation>
     </message>
     <message>
-        <source>Searching for datasets</source>
-        <translation>Datensätze werden gesucht</translation>
-    </message>
-    <message>
         <source>Searching for the sufficient number of facets</source>
         <translation>Genügende Anzahl von Facetten wird gesucht</translation>
     </message>
@@ -5462,10 +5426,6 @@
     <message>
         <source>Show particles</source>
         <translation>Partikel zeigen</translation>
-    </message>
-    <message>
-        <source>Show the &amp;library</source>
-        <translation>Bib&amp;liothek zeigen</translation>
     </message>
     <message>
         <source>Show the open particles</source>
@@ -6232,10 +6192,6 @@
         <translation>Der Ordner enthält {count} Serien; die längste wurde gelesen.</translation>
     </message>
     <message>
-        <source>The folder of your datasets</source>
-        <translation>Der Ordner Ihrer Datensätze</translation>
-    </message>
-    <message>
         <source>The folder {path} cannot be made ({reason}).</source>
         <translation>Der Ordner {path} kann nicht angelegt werden ({reason}).</translation>
     </message>
@@ -6548,10 +6504,6 @@
         <translation>Den Ordner {folder} gibt es schon. Den Datensatz darin ersetzen?</translation>
     </message>
     <message>
-        <source>There is no dataset below this folder.</source>
-        <translation>Unter diesem Ordner gibt es keinen Datensatz.</translation>
-    </message>
-    <message>
         <source>There is no dataset to check: build or open one first.</source>
         <translation>Es gibt keinen Datensatz zu prüfen: bauen oder öffnen Sie zuerst einen.</translation>
     </message>
@@ -6830,10 +6782,6 @@
     <message>
         <source>Use the open particles</source>
         <translation>Geöffnete Partikel verwenden</translation>
-    </message>
-    <message>
-        <source>Use this dataset</source>
-        <translation>Diesen Datensatz verwenden</translation>
     </message>
     <message>
         <source>Use {count} facets</source>

@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -153,21 +152,6 @@ def test_that_formats_are_listed_with_what_they_lose(command) -> None:
     for exporter in EXPORTERS.values():
         assert all(text in result.out for text in (exporter.label, *exporter.carries, *exporter.loses))
     assert [one["key"] for one in command("dataset", "formats", "--json").json] == list(EXPORTERS)
-
-
-def test_that_a_library_is_listed_with_what_came_from_what(command, folder: Path, tmp_path: Path) -> None:
-    command("dataset", "export", folder, "--to", "hoomd", "-o", tmp_path / "out")
-    shutil.copytree(folder, tmp_path / "set")
-    result = command("dataset", "list", tmp_path)
-    assert result.code == 0
-    first, _, child, _ = result.out.splitlines()
-    assert first.startswith("set: 3 shapes")
-    assert child.startswith("    set for hoomd")
-    (top,) = command("dataset", "list", tmp_path, "--json").json
-    assert top["sha256"] == dataset_hash(folder)
-    assert [one["kind"] for one in top["from_it"]] == ["export"]
-    assert command("dataset", "list", tmp_path, "--filter", "venus").out == ""
-    assert command("dataset", "list", tmp_path / "nowhere").code == 1
 
 
 def files(folder: str) -> list[Path]:

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox, QPushButto
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.export import ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
+from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -389,51 +389,6 @@ def test_that_themes_reach_every_part(chosen) -> None:
     for theme in (DARK, LIGHT):
         chosen.set_theme(theme)
     assert chosen.gallery.shown
-
-
-@pytest.mark.slow
-def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_path, wait) -> None:
-    chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen._dataset is not None)
-    chosen.targets.setValue({"targets": ["hoomd"]})
-    chosen.export_to(tmp_path / "out")
-    wait(lambda: len(chosen.exports.exports) == 1)
-    library = chosen.library
-    library.show_folder(tmp_path)
-    wait(lambda: library.tree.topLevelItemCount() == 1)
-    top = library.tree.topLevelItem(0)
-    assert (top.text(0), top.child(0).text(0)) == ("regolith", "regolith for hoomd")
-    assert not top.icon(0).isNull()
-    library.tree.setCurrentItem(top.child(0))
-    assert "Does not carry" in library.facts.text()
-    assert not library.use.isEnabled()
-    library.tree.setCurrentItem(top)
-    assert "representatives of 8 particles" in library.facts.text()
-    chosen.session.adopt(grains(4, first=20))
-    wait(lambda: not chosen.gallery.shown)
-    QTest.mouseClick(library.use, Qt.MouseButton.LeftButton)
-    wait(lambda: len(chosen.gallery.shown) == 3)
-    QTest.keyClicks(library.words, "venus")
-    assert library.tree.topLevelItemCount() == 0
-
-
-@pytest.mark.slow
-def test_that_the_first_dataset_opens_the_library_with_its_simulations(chosen, tmp_path, wait) -> None:
-    """Nobody chose a folder: what was built is listed, and what was simulated elsewhere with it."""
-    runs = tmp_path / "elsewhere"
-    chosen.session.runs_folder = runs
-    chosen.build_in(tmp_path / "sets" / "set")
-    library = chosen.library
-    wait(lambda: library.tree.topLevelItemCount() == 1)
-    assert library.tree.topLevelItem(0).childCount() == 0
-    for name, sha in (("own", dataset_hash(tmp_path / "sets" / "set")), ("other", "0" * 64)):
-        (runs / name).mkdir(parents=True)
-        run = {"format": "regolith-studio-repose", "state": "finished", "engine": {"label": "MuJoCo"}}
-        run |= {"dataset": {"name": "set", "sha256": sha}, "measurement": {"angle_deg": 27.0}}
-        (runs / name / "repose.json").write_text(json.dumps(run))
-    chosen.on_show()
-    wait(lambda: library.tree.topLevelItemCount() == 1 and library.tree.topLevelItem(0).childCount() == 1)
-    assert library.tree.topLevelItem(0).child(0).text(0) == "27.0° angle of repose of set"
 
 
 @pytest.mark.usefixtures("app")

@@ -43,7 +43,7 @@ What a page can rely on
 * It is built at its first visit, in the thread of the window, and kept until the window closes. Its parts are
   made in the constructor or in :meth:`PageWidget.build`; numerical libraries are imported inside jobs.
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
-  ``choose(...)``, ``dataset_folder`` and ``runs_folder`` (written last).
+  ``choose(...)`` and ``dataset_folder`` (written last).
   ``context.commands.adopt(particles, origin)`` opens particles made by a page: they replace or join the open
   ones, as ``context.commands.ask_before_making()`` has answered, and are measured and shown everywhere.
 * **Refreshing**: ``context.bindings.refresh("particles choices", action, ("l_max",))`` calls `action` soon

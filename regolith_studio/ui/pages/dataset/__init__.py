@@ -18,6 +18,5 @@ PAGE = Page(
         ActionSpec("validate", N_("&Check the dataset")),
         ActionSpec(BREAK),
         ActionSpec("export", N_("&Export to DEM programs …"), shortcut="Ctrl+Return"),
-        ActionSpec("library", N_("Show the &library")),
     ),
 )

@@ -53,7 +53,6 @@ from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import (
     DatasetControls,
     FolderPanel,
-    LibraryPanel,
     RepresentativesPanel,
     SizesPanel,
 )
@@ -111,7 +110,6 @@ class DatasetPage(PageWidget):
         self.result.add(self.open_written)
         self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
         self.quality, self.distribution = QualityPlot(), SizesPlot()
-        self.library = LibraryPanel(self._context)
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
         self._place()
         self._connect()
@@ -130,7 +128,6 @@ class DatasetPage(PageWidget):
             "open_dataset": self.open_dataset,
             "validate": self.validate,
             "export": self.export,
-            "library": self.show_library,
         }
 
     def settings(self) -> dict[str, Any]:
@@ -184,9 +181,6 @@ class DatasetPage(PageWidget):
                 panel.setValue(state[name])
         self.sizes.set_text(str(state.get("sizes", "measured")))
         self.folder.name.setText(str(state.get("name", "regolith")))
-
-    def on_show(self) -> None:
-        self.library.refresh()
 
     def on_close(self) -> None:
         self.gallery.release()
@@ -273,16 +267,6 @@ class DatasetPage(PageWidget):
 
     def open_path(self, path: Path) -> None:
         self.open_folder(path if path.is_dir() else path.parent)
-
-    def show_library(self) -> None:
-        """Show the library; ask for its folder if there is none yet."""
-        self._shapes.setCurrentWidget(self.library)
-        if not self.library.entries:
-            self.library.ask()
-
-    def _use(self, folder: Path) -> None:
-        self.open_folder(folder)
-        self._shapes.setCurrentWidget(self.gallery)
 
     def validate(self) -> None:
         if self._folder is None:
@@ -399,7 +383,7 @@ class DatasetPage(PageWidget):
         chosen = None if every else self._chosen
         shown = chosen_particles(self._particles, chosen) if chosen is not None else []
         title = tr_count(N_("1 representative"), N_("{count} representatives"), len(shown))
-        self.gallery.show_shapes(title if shown else "", shown)  # the tab has the name
+        self.gallery.show_shapes(title if shown else "", shown)
         self._show_sizes()
         self._update_request()
 
@@ -448,7 +432,6 @@ class DatasetPage(PageWidget):
         self._context.toast.note(
             tr("{count} shapes in {folder}.", count=len(built.dataset), folder=built.folder)
         )
-        self.library.suggest(built.folder.parent)
         self._enable_export()
         if exports is not None:
             self.export_to(exports)
@@ -522,8 +505,6 @@ class DatasetPage(PageWidget):
         self._context.toast.note(
             tr("{formats} written to {folder}.", formats=", ".join(labels), folder=done[0].folder.parent)
         )
-        if self.library.entries:
-            self.library.refresh()
 
     # --- parts ---------------------------------------------------------------------------------
 
@@ -558,7 +539,6 @@ class DatasetPage(PageWidget):
         self.representatives.whichChanged.connect(self._show_chosen)
         self.folder.openRequested.connect(self.open_dataset)
         self.open_written.clicked.connect(self._open_written)
-        self.library.openRequested.connect(self._use)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)
         for signal in (self.targets.chosenChanged, self.targets.optionsChanged, self.sizes.sizesChanged):
@@ -578,10 +558,9 @@ class DatasetPage(PageWidget):
         upper = equal_parts(Qt.Orientation.Horizontal, (framed(self.quality), framed(self.distribution)))
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (scrolled(self.exports), tr("Exported"))]
-        shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
-        self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
-        self._shapes.setMinimumHeight(CELL.height() + 4 * self.fontMetrics().height())
-        middle = stacked((upper, self._shapes, self._lower), (260, 330, 120), stretch=1)
+        self._lower = tabs("dataset_lower", lower)
+        self.gallery.setMinimumHeight(CELL.height() + 3 * self.fontMetrics().height())
+        middle = stacked((upper, self.gallery, self._lower), (260, 330, 120), stretch=1)
         middle.setObjectName("dataset_middle")
         results = QWidget()
         vbox(self.result, (middle, 1), parent=results, margins=(10, 10, 2, 8))

@@ -474,7 +474,6 @@ class ReposePage(PageWidget):
     # --- what a run left -----------------------------------------------------------------------
 
     def _list_runs(self, chosen: Path | None = None) -> None:
-        self._context.session.runs_folder = self._folder
         runs = find_runs(self._folder) if self._folder.is_dir() else []
         self.runs.set_runs(runs, chosen)
         self.setup.set_fillings([run.folder for run in runs if run.document["state"] == "finished"])
