@@ -39,7 +39,7 @@ from regolith_studio.session.provenance import (
 from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
-from regolith_studio.ui.dialogs.files import ADD, REPLACE, UnitDialog, ask_add_or_replace
+from regolith_studio.ui.dialogs.files import ADD, REPLACE, UnitDialog, ask_add_or_replace, ask_for_files
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -219,8 +219,7 @@ class Commands(QObject):
         every = " ".join(f"*{suffix}" for suffix in openable_suffixes())
         first = (tr("All that can be opened ({suffixes})", suffixes=every),)
         kinds = (*first, tr("Volumes ({suffixes})", suffixes=volumes), *map(tr, FILTERS))
-        names, _ = QFileDialog.getOpenFileNames(self._window, tr("Open"), self._folder(), ";;".join(kinds))
-        self.open_paths([Path(name) for name in names])
+        self.open_paths(ask_for_files(self._window, tr("Open"), self._folder(), ";;".join(kinds)))
 
     def open_folder(self) -> None:
         name = QFileDialog.getExistingDirectory(self._window, tr("Open a folder of meshes"), self._folder())

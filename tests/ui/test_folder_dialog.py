@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QMessageBox, QPushButton
 
-from regolith_studio.ui.dialogs.files import FolderDialog
+from regolith_studio.ui.dialogs.files import FolderDialog, ask_for_files
 
 
 @pytest.fixture
@@ -123,3 +123,30 @@ def test_that_a_click_beside_the_completions_of_a_typed_folder_acts(shown, wait,
     assert pressed == [False]
     assert dialog.result() == 0
     assert not dialog.isVisible()
+
+
+def test_that_completions_of_no_name_close_in_the_dialog_of_files(app, tmp_path):  # noqa: ARG001
+    (tmp_path / "one.stl").write_bytes(b"")
+    seen = []
+
+    def look():
+        line = QApplication.activeModalWidget().findChild(QLineEdit, "fileNameEdit")
+        seen.append((line.text(), line.completer().popup().isVisible()))
+        if len(seen) == 10:  # as Qt does when a folder has been entered by its name
+            line.completer().complete()
+        elif len(seen) == 20:
+            line.setText("o")
+            line.completer().complete()
+        elif len(seen) == 30:
+            line.setText("")
+        elif len(seen) == 40:
+            QApplication.activeModalWidget().reject()
+
+    timer = QTimer(interval=20)
+    timer.timeout.connect(look)
+    timer.start()
+    assert ask_for_files(None, "Open", str(tmp_path), "Meshes (*.stl)") == []
+    timer.stop()
+    assert seen[19] == ("", False)
+    assert seen[29] == ("o", True)
+    assert seen[39] == ("", False)

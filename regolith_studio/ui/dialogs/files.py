@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import cast
 
-from PySide6.QtCore import QEvent, QObject, QPointF, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -208,6 +208,39 @@ def _is_plausible(length: float, unit: str) -> bool:
     """Whether a particle of this longest side has the size of a grain."""
     low, high = GRAIN_SIZES
     return low <= length * unit_factor(unit) <= high
+
+
+class _EmptyCompletions(QObject):
+    """Closes the completions of a name that is empty: Qt leaves them open where a folder has been entered."""
+
+    def __init__(self, line: QLineEdit, completions: QAbstractItemView) -> None:
+        super().__init__()
+        self._line, self._completions = line, completions
+        completions.installEventFilter(self)
+        line.textChanged.connect(self._close)
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Show:
+            self._close()
+        return False
+
+    def _close(self) -> None:
+        if not self._line.text():
+            QTimer.singleShot(0, self, self._completions.hide)
+
+
+def ask_for_files(parent: QWidget | None, title: str, folder: str, kinds: str) -> list[Path]:
+    """Files that the user chooses; none where the dialog is cancelled."""
+    dialog = QFileDialog(parent, title, folder, kinds)
+    dialog.setFileMode(QFileDialog.FileMode.ExistingFiles)
+    line = dialog.findChild(QLineEdit, "fileNameEdit")  # not there where the desktop has its own dialog
+    watch = _EmptyCompletions(line, line.completer().popup()) if line is not None else None
+    try:
+        agreed = dialog.exec() == QDialog.DialogCode.Accepted
+        return [Path(name) for name in dialog.selectedFiles()] if agreed else []
+    finally:
+        del watch
+        dialog.deleteLater()
 
 
 class FolderDialog(QFileDialog):
