@@ -104,6 +104,7 @@ class PageHistory(QObject):
         self._future: list[PageStep] = []
         self._kept: dict[str, dict[str, Any]] = {}
         self._seen: dict[str, dict[str, Any]] = {}
+        self._offered: tuple[bool, ...] = (False, False)
         self.changed.emit()
 
     def stop(self) -> None:
@@ -125,6 +126,20 @@ class PageHistory(QObject):
             self._kept[key] = now
             self.changed.emit()
         self._seen[key] = now
+        offered = tuple(self.own_step(name) is not None for name in ("undo", "redo"))
+        if offered != self._offered:
+            self._offered = offered
+            self.changed.emit()
+
+    @property
+    def seen(self) -> str:
+        """Key of the page that is seen."""
+        return self._pages.current if self._pages else ""
+
+    def own_step(self, name: str) -> Callable[[], None] | None:
+        """What ``undo`` or ``redo`` does on the page that is seen, which keeps its steps itself."""
+        page = self._pages.widgets.get(self._pages.current) if self._pages else None
+        return page.step(name) if page is not None else None
 
     def undo_page(self, older: bool = False) -> str:
         """Page of the step to take back, if it is the newest of all or `older` ones count too."""
@@ -355,6 +370,10 @@ class Commands(QObject):
     def undo(self) -> None:
         """Undo the last change; where there is none, reopen what was open before the last opening."""
         self.page_steps.look(resting=True)
+        if own := self.page_steps.own_step("undo"):
+            own()
+            self.page_steps.look()
+            return
         match self.next_step("undo"):
             case "explore":
                 self._step(self._session.undo)
@@ -365,6 +384,10 @@ class Commands(QObject):
 
     def redo(self) -> None:
         """Redo what was undone last, a change or an opening."""
+        if own := self.page_steps.own_step("redo"):
+            own()
+            self.page_steps.look()
+            return
         match self.next_step("redo"):
             case "explore":
                 self._step(self._session.redo)
@@ -393,7 +416,7 @@ class Commands(QObject):
 
     def step_title(self, name: str, pages: Mapping[str, str]) -> str:
         """What ``undo`` or ``redo`` would act on, and on which page; empty where it would change nothing."""
-        where = self.next_step(name)
+        where = self.page_steps.seen if self.page_steps.own_step(name) else self.next_step(name)
         if where == OPENING:
             return tr("Undo the opening") if name == "undo" else tr("Redo the opening")
         page = tr(pages[where]) if where else ""

@@ -108,6 +108,10 @@ class PageWidget(QWidget):
         """The part of :meth:`state` that undo takes back: what is set on this page alone."""
         return {}
 
+    def step(self, name: str) -> Callable[[], None] | None:  # noqa: ARG002
+        """What ``undo`` or ``redo`` does before all else while this page is seen, if there is something."""
+        return None
+
     def state(self) -> dict[str, Any]:
         """What a project file keeps of this page, as plain JSON; under ``made``, what was computed here."""
         return self.settings()

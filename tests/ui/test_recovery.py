@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QMessageBox
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.imaging.segmentation.label_edits import LabelEdit
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session import project
@@ -20,6 +21,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.pages.scan.corrections import CorrectionState
 from regolith_studio.ui.project_files import CopyLock, autosave_path, stale_autosaves
 from regolith_studio.ui.startup import open_window
 
@@ -201,6 +203,26 @@ def test_that_undo_acts_on_the_page_of_the_last_change_and_shows_it(shown, prefe
         redo.trigger()
     assert dataset.representatives.count.value() == before - 1
     assert (repose.setup.particles.value(), window.session.choices.n_facets) == (500, 12)
+
+
+def test_that_undo_of_the_window_takes_back_corrections_while_the_page_of_scans_is_seen(shown, preferences):
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    undo, redo = (window.menus.by_name[each] for each in ("undo", "redo"))
+    page = window.go("scan")
+    page.tabs.setCurrentWidget(page.edits)
+    assert not undo.isEnabled()
+    edited = CorrectionState(edits=(LabelEdit("fill", ((4, 5, 6),)),))
+    page.corrections.history.push(edited)
+    window.commands.page_steps.look()
+    assert undo.text() == "Undo on Scan"
+    undo.trigger()
+    assert page.corrections.state == CorrectionState()
+    assert not undo.isEnabled()
+    assert redo.text() == "Redo on Scan"
+    redo.trigger()
+    assert page.corrections.state == edited
+    window.go("explore")
+    assert not undo.isEnabled()
 
 
 def test_that_a_copy_of_a_process_of_the_same_number_is_offered(preferences):  # noqa: ARG001

@@ -234,7 +234,8 @@ def ask_for_files(parent: QWidget | None, title: str, folder: str, kinds: str) -
     dialog = QFileDialog(parent, title, folder, kinds)
     dialog.setFileMode(QFileDialog.FileMode.ExistingFiles)
     line = dialog.findChild(QLineEdit, "fileNameEdit")  # not there where the desktop has its own dialog
-    watch = _EmptyCompletions(line, line.completer().popup()) if line is not None else None
+    completions = line.completer().popup() if line is not None else None
+    watch = _EmptyCompletions(line, completions) if line is not None and completions is not None else None
     try:
         agreed = dialog.exec() == QDialog.DialogCode.Accepted
         return [Path(name) for name in dialog.selectedFiles()] if agreed else []

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPointF, Qt
-from PySide6.QtTest import QTest
+from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.imaging.label_table import voxel_inside
@@ -41,9 +40,8 @@ def objects(page, tmp_path, wait):
     return tmp_path / "objects.npy"
 
 
-def undo_by_key(page):
-    page.setFocus()
-    QTest.keyClick(page, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+def undo(page):
+    page.step("undo")()
 
 
 def labels_of_recipe(page, path, tmp_path, monkeypatch):
@@ -82,7 +80,7 @@ def test_that_marked_examples_classify_the_objects_which_are_split_and_dropped(
     wait(file.is_file, SECONDS)
     assert read_objects(file).scan == sha256_of(objects)
     for _ in range(4):
-        undo_by_key(page)
+        undo(page)
     assert page.corrections.state.examples == ()
     wait(lambda: page.grains is not None, SECONDS)
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(file), ""))
@@ -125,7 +123,7 @@ def test_that_grains_are_merged_split_and_deleted_with_undo_and_the_recipe_does_
     assert found[16, 16, 16] == found[80, 16, 16] > 0
     assert np.array_equal(labels_of_recipe(page, objects, tmp_path, monkeypatch), found)
     for expected in (5, 6, 7, 6):
-        undo_by_key(page)
+        undo(page)
         wait(lambda: page.grains is not None, SECONDS)
         assert page.grains.n_grains == expected
     press(page.edits.redo)
@@ -162,7 +160,7 @@ def test_that_grains_are_painted_erased_and_filled_and_the_recipe_does_the_same(
     assert found[16, 16, 16] == before[16, 16, 16]
     assert page.edits.list.count() == 4
     assert np.array_equal(labels_of_recipe(page, objects, tmp_path, monkeypatch), found)
-    undo_by_key(page)
+    undo(page)
     wait(lambda: page.grains is not None, SECONDS)
     assert page.grains.labels.array[16, 16, 16] == 0
 
@@ -185,7 +183,7 @@ def test_that_the_grain_being_mended_stands_out_in_three_dimensions(page, wait):
     wait(lambda: page.grains is not None and len(page.slices._highlighted) == 2, SECONDS)
     wait(lambda: page.slices._surface[0] is page.grains.labels, SECONDS)
     assert 0 < coloured() < 0.6 * every
-    undo_by_key(page)
+    undo(page)
     wait(lambda: page.grains is not None, SECONDS)
     wait(lambda: page.slices._surface[0] is page.grains.labels, SECONDS)
     assert page.slices._highlighted == set()

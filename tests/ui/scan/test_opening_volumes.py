@@ -45,7 +45,7 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
     assert page.scan.volume.voxel_size.tolist() == [4.6, 4.6, 4.6]
     assert page.state()["region"] == {"crop": "10:70,:,92:161um", "bin": 2, "outside": "auto"}
     entries = []
-    monkeypatch.setattr(page.making, "_adopt", lambda _made, entry: entries.append(entry))
+    monkeypatch.setattr(page.making, "_adopt", lambda _made, entry, _answer: entries.append(entry))
     page.find_grains()
     wait(lambda: page.grains is not None, SECONDS)
     with monkeypatch.context() as patch:

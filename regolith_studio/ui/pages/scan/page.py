@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from PySide6.QtCore import QEvent, QObject, QTimer, Signal
-from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
+from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from regolith_studio.errors import RegolithError
@@ -468,38 +468,23 @@ class ScanPage(PageWidget):
         self.workflow.particlesRequested.connect(self.make_particles)
         self.workflow.showRequested.connect(lambda: self._context.go("sample"))
 
-    def event(self, event: QEvent) -> bool:
-        """Take Ctrl+Z for strokes and corrections while the page has the focus and there are some."""
-        if event.type() == QEvent.Type.ShortcutOverride and self._step_of(cast(QKeyEvent, event)):
-            event.accept()
-            return True
-        return super().event(event)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if step := self._step_of(event):
-            step()
-        else:
-            super().keyPressEvent(event)
-
     def _stop_tools(self) -> None:
         """Let clicks show slices again when another tab is chosen."""
         self.controls.draw_box.setChecked(False)
         self.brush.paint.setChecked(False)
         self.corrections.stop_tools()
 
-    def _step_of(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """What the keys of undo and redo do to strokes, or to examples and corrections of grains."""
+    def step(self, name: str) -> Callable[[], None] | None:
+        """Of strokes while they are painted, or of examples and corrections of grains."""
         shown = self.tabs.currentWidget()
         steps: Painting | Corrections = self.painting
         if shown in (self.objects, self.edits):
             steps = self.corrections
         elif not self.brush.paint.isChecked():
             return None
-        if event.matches(QKeySequence.StandardKey.Undo) and steps.history.can_undo:
-            return steps.undo
-        if event.matches(QKeySequence.StandardKey.Redo) and steps.history.can_redo:
-            return steps.redo
-        return None
+        if name == "undo":
+            return steps.undo if steps.history.can_undo else None
+        return steps.redo if steps.history.can_redo else None
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take one file or folder; several go on to the window, which opens meshes or says what it cannot."""
