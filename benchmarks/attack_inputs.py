@@ -152,7 +152,7 @@ def _positions(folder: Path) -> Iterator[Case]:
     """Positions that are noise, cut off, or a pipe."""
     random = np.random.default_rng(0)
     table = "x,y,z,diameter\n" + "0.001,0.002,0.003,0.0004\n" * 50
-    for suffix in ("csv", "xyz", "txt", "vtk", "vtp", "vtu"):
+    for suffix in ("csv", "xyz", "txt"):
         for name, content in (("noise", random.bytes(3000)), ("cut", table.encode()[:-7]), ("none", b"")):
             path = folder / f"{name}.{suffix}"
             path.write_bytes(content)

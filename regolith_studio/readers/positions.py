@@ -1,4 +1,4 @@
-"""Particle positions from tables, XYZ, LAMMPS dumps and VTK files, for the angle of repose."""
+"""Particle positions from tables, XYZ and LAMMPS dumps, for the angle of repose."""
 
 import re
 from collections.abc import Callable
@@ -59,7 +59,7 @@ def read_positions(
 ) -> ParticlePositions:
     """The particles of a position file; of several time steps the last.
 
-    - ``path``: a table (.csv, .txt, .dat), XYZ, a LAMMPS dump, or VTK points (.vtk, .vtp, .vtu).
+    - ``path``: a table (.csv, .txt, .dat), XYZ, or a LAMMPS dump.
     - ``unit``: unit of the file's numbers, where the file names none itself (``x [mm]``, ``x_mm``, the units
       of a LAMMPS dump).
     - ``columns``: names of all columns of a table or XYZ file, in their order: x, y, z, perhaps diameter or

@@ -4404,8 +4404,8 @@
         <translation>Poren, die ein Korn umschließt, zählen als Korn.</translation>
     </message>
     <message>
-        <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
-        <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
+        <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj);;All files (*)</source>
+        <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj);;Alle Dateien (*)</translation>
     </message>
     <message>
         <source>Positions in {name}</source>

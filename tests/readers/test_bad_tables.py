@@ -1,9 +1,6 @@
 """Positions and tables that are broken in ways we made: each is refused with the sentence of its kind."""
 
-import base64
 import re
-import struct
-import zlib
 
 import numpy as np
 import pytest
@@ -67,74 +64,6 @@ DUMPS: Bad = strangers(".dump", "is not a LAMMPS dump") | {
     "tilted.dump": (SCALED.replace("BOUNDS pp", "BOUNDS xy xz yz pp"), "a box that is tilted or not stated"),
     "flat-box.dump": (SCALED.replace("0 1\n0 1\n0 1", "0 1\n0 1"), "tilted or not stated"),
 }
-VTK = (
-    "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 1 1\n"
-    "POINT_DATA 2\nSCALARS radius float\nLOOKUP_TABLE default\n1 1\n"
-)
-BINARY = VTK.split("0 0 0")[0].replace("ASCII", "BINARY").encode()
-VTKS: Bad = strangers(".vtk", "is not a legacy VTK file") | {
-    "cut.vtk": (VTK[:60], "is a broken VTK|holds no points|is cut short"),
-    "form.vtk": (VTK.replace("ASCII", "XML"), "neither ASCII nor BINARY"),
-    "kind.vtk": (VTK.replace("POLYDATA\nPOINTS 2 float", "STRUCTURED_POINTS"), "holds no points"),
-    "count.vtk": (VTK.split("POINT_DATA")[0].replace("S 2", "S 3"), "is cut short: it declares 9"),
-    "enormous.vtk": (VTK.replace("S 2", "S 999999999999"), "is cut short: it declares"),
-    "number.vtk": (VTK.replace("POINTS 2", "POINTS -2"), "holds no points"),
-    "type.vtk": (VTK.replace("POINTS 2 float", "POINTS 2 half"), "there is no type"),
-    "word.vtk": (VTK.replace("0 0 0 1", "0 0 0 one"), "a word stands where a number belongs"),
-    "infinite.vtk": (VTK.replace("0 0 0 1 1 1", "0 0 nan 1 1 inf"), "no particle whose position"),
-    "binary.vtk": (BINARY + bytes(23), "is cut short: it declares 6"),
-    "size.vtk": (VTK.replace("default\n1 1", "default\n0 0"), "no particle whose position and size"),
-}
-
-
-def vtp(array: str, head: str = "", tail: str = "", count: int | str = 2, kind: str = "PolyData") -> str:
-    return (
-        f'<?xml version="1.0"?><VTKFile type="{kind}" byte_order="LittleEndian" {head}><{kind}>'
-        f'<Piece NumberOfPoints="{count}"><Points>{array}</Points></Piece></{kind}>{tail}</VTKFile>'
-    )
-
-
-def array(content: str, form: str = "ascii", kind: str = "Float32", more: str = "") -> str:
-    return f'<DataArray type="{kind}" NumberOfComponents="3" format="{form}" {more}>{content}</DataArray>'
-
-
-def encoded(*parts: bytes) -> str:
-    return "".join(base64.b64encode(part).decode() for part in parts)
-
-
-POINTS = struct.pack("<6f", 0, 0, 0, 1, 1, 1)
-PACKED = zlib.compress(POINTS)
-ZLIB = 'compressor="vtkZLibDataCompressor"'
-TAIL = '<AppendedData encoding="raw">_abc</AppendedData>'
-GOOD = vtp(array("0 0 0 1 1 1"))
-LAUGHS = '<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;">]>' + vtp(array("&c;"))[21:]
-VTPS: Bad = strangers(".vtp", "its XML is malformed|defines entities") | {
-    "cut.vtp": (GOOD[: len(GOOD) // 2], "its XML is malformed"),
-    "kind.vtp": (vtp(array("0 0 0"), kind="ImageData"), "neither poly data nor an unstructured grid"),
-    "type.vtp": (vtp(array("0 0 0 1 1 1", kind="Float16")), "an array has no type that is known"),
-    "odd.vtp": (vtp(array("0 0 0 1 1")), "its points are not three numbers each"),
-    "count.vtp": (vtp(array("0 0 0 1 1 1"), count=3), "is cut short: it declares"),
-    "none.vtp": (vtp(array(""), count=0), "holds no points"),
-    "word.vtp": (vtp(array("0 0 0 1 1 1,5")), "a word stands where a number belongs"),
-    "base64.vtp": (vtp(array("AAA", "binary")), "is cut short|its base64 cannot be decoded"),
-    "binary.vtp": (vtp(array(encoded(struct.pack("<I", 24) + POINTS[:9]), "binary")), "is cut short"),
-    "packed.vtp": (
-        vtp(array(encoded(struct.pack("<4I", 1, 24, 24, len(PACKED)), PACKED[:5]), "binary"), ZLIB),
-        "is cut short",
-    ),
-    "garbled.vtp": (
-        vtp(array(encoded(struct.pack("<4I", 1, 24, 24, 20), b"\xff" * 20), "binary"), ZLIB),
-        "its compressed points cannot be unpacked",
-    ),
-    "blocks.vtp": (
-        vtp(array(encoded(struct.pack("<3I", 2**31, 24, 24)), "binary"), ZLIB),
-        "more blocks than can be",
-    ),
-    "lz4.vtp": (vtp(array("", "binary"), 'compressor="vtkLZ4DataCompressor"'), "compressor that is not read"),
-    "appended.vtp": (vtp(array("", "appended", more='offset="999"'), tail=TAIL), "is cut short"),
-    "laughs.vtp": (LAUGHS, "defines entities of its own"),
-    "infinite.vtp": (vtp(array("nan 0 0 0 0 inf")), "no particle whose position"),
-}
 COMPLEX = "0 0 10 0\n1 -1 1 0.5\n1 0 0.1 0\n1 1 -1 0.5\n"
 COEFFICIENTS: Bad = strangers(".anm", NO_TABLE + "|has \\d columns") | {
     "word.anm": (COMPLEX + "2 0 --1 0\n", "has “--1” where a number belongs"),
@@ -148,7 +77,7 @@ COEFFICIENTS: Bad = strangers(".anm", NO_TABLE + "|has \\d columns") | {
     "convention.anm": ("0 0 10 0\n1 0 1 0\n", "does not show its convention"),
 }
 CORPORA: dict[str, Bad] = {
-    "tables": TABLES, "xyz": XYZS, "lammps": DUMPS, "vtk": VTKS, "vtp": VTPS, "coefficients": COEFFICIENTS,
+    "tables": TABLES, "xyz": XYZS, "lammps": DUMPS, "coefficients": COEFFICIENTS,
 }  # fmt: skip
 
 
@@ -172,12 +101,4 @@ SEEDS = {
     "b.csv": b"1;2;3;4\n5;6;7;8\n",
     "a.xyz": b"2\nProperties=species:S:1:pos:R:3:radius:R:1\nA 1 2 3 4\nB 1 2 3 4\n",
     "a.dump": DUMP.replace("id x y z", "id xs ys zs").encode(),
-    "a.vtk": VTK.encode(),
-    "b.vtk": BINARY + POINTS + b"\nPOINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n"
-    + struct.pack(">2f", 1, 2),
-    "a.vtp": vtp(array("0 0 0 1 1 1")).encode(),
-    "b.vtp": vtp(array(encoded(struct.pack("<4I", 1, 24, 24, len(PACKED)), PACKED), "binary"), ZLIB).encode(),
-    "c.vtp": vtp(array("", "appended", more='offset="0"'), tail='<AppendedData encoding="raw">_').encode()[
-        :-10
-    ] + struct.pack("<I", 24) + POINTS + b"</AppendedData></VTKFile>",
 }  # fmt: skip

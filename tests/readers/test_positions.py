@@ -1,4 +1,4 @@
-"""Positions as tables, XYZ, LAMMPS dumps and VTK files, the last written by VTK itself."""
+"""Positions as tables, XYZ and LAMMPS dumps."""
 
 import pickle
 
@@ -280,45 +280,6 @@ def test_that_shares_of_the_box_become_positions(read) -> None:
     assert np.allclose(read("a.dump", dump("xs ys zs", shares)).points, POINTS, atol=1e-5)
     with pytest.raises(FileError, match="tilted"):
         read("a.dump", dump("xs ys zs", shares, "xy xz yz pp pp pp"))
-
-
-@pytest.fixture
-def cloud():
-    """The particles as VTK has them."""
-    pyvista = pytest.importorskip("pyvista")
-    made = pyvista.PolyData(POINTS)
-    made.point_data["velocity"] = POINTS
-    made.point_data["Radius"] = DIAMETERS / 2
-    return made
-
-
-@pytest.mark.parametrize("binary", [True, False])
-def test_that_legacy_vtk_files_are_read(binary, cloud, tmp_path) -> None:
-    cloud.save(tmp_path / "a.vtk", binary=binary)
-    found = read_positions(tmp_path / "a.vtk")
-    assert np.allclose(found.points, POINTS)
-    assert np.allclose(found.diameters, DIAMETERS)
-
-
-@pytest.mark.parametrize("mode", ["Ascii", "Binary", "Appended"])
-@pytest.mark.parametrize("compressed", [True, False])
-@pytest.mark.parametrize("encoded", [True, False])
-@pytest.mark.parametrize("big", [True, False])
-def test_that_vtps_are_read_however_they_are_packed(mode, compressed, encoded, big, cloud, tmp_path) -> None:
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-    writer = vtkXMLPolyDataWriter()
-    getattr(writer, f"SetDataModeTo{mode}")()
-    writer.SetCompressorTypeToZLib() if compressed else writer.SetCompressorTypeToNone()
-    writer.SetEncodeAppendedData(encoded)
-    writer.SetByteOrderToBigEndian() if big else writer.SetByteOrderToLittleEndian()
-    writer.SetBlockSize(1024)
-    writer.SetInputData(cloud)
-    writer.SetFileName(str(tmp_path / "a.vtp"))
-    writer.Write()
-    found = read_positions(tmp_path / "a.vtp")
-    assert np.allclose(found.points, POINTS)
-    assert np.allclose(found.diameters, DIAMETERS)
 
 
 def test_that_particles_without_a_proper_position_or_size_are_left_out_and_counted(read) -> None:

@@ -46,9 +46,7 @@ from regolith_studio.ui.widgets.fields import StepPlayer, choice, decimal_field
 from regolith_studio.ui.widgets.labels import hint_label, short_number
 from regolith_studio.ui.widgets.toast import Toast
 
-POSITIONS = N_(
-    "Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)"
-)
+POSITIONS = N_("Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj);;All files (*)")
 UNITS = ("m", "mm", "um", "cm")
 """In the order in which they are suggested."""
 HEAP_WIDTHS = (5e-3, 2.0)
