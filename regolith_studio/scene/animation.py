@@ -19,9 +19,8 @@ from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
-from regolith_studio.scene.cameras import TURN, CameraPose, orbited
+from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.figure import Picture, three_views
-from regolith_studio.scene.shapes import LABELS, SceneShape, show_shape
 
 KINDS = (".gif", ".webp", ".png")
 
@@ -45,67 +44,6 @@ def save_animation(frames: Sequence[Picture], seconds: Sequence[float], path: Pa
         colours = images[-1].quantize(256, method=Image.Quantize.MEDIANCUT)
         images = [image.quantize(palette=colours, dither=Image.Dither.NONE) for image in images]
     images[0].save(path, save_all=True, append_images=images[1:], duration=durations, loop=0)
-
-
-SIZE = (380, 360)
-"""Width and height of one body in pixels."""
-FRAMES = 60
-SECONDS = 4.0
-"""Of a whole turn."""
-
-
-def turntable(
-    shapes: Sequence[SceneShape], pose: CameraPose | None, path: Path, frames: int = FRAMES, scale: int = 1
-) -> None:
-    """Write one turn about the upright of the picture as GIF or WebP.
-
-    - ``shapes``: what turns, from left to right, in one frame of coordinates.
-    - ``pose``: where the camera begins; isometric if not given. The whole bodies are seen whatever its
-      scale.
-    - ``scale``: whole factor on the size in pixels.
-    """
-    pictures = list(_pictures(shapes, pose, frames, scale))
-    save_animation(pictures, [SECONDS / frames] * frames, path)
-
-
-def _pictures(
-    shapes: Sequence[SceneShape], pose: CameraPose | None, frames: int, scale: int
-) -> Iterator[Picture]:
-    width, height = (scale * each for each in SIZE)
-    plotter_setup.choose_off_screen_window()
-    plotter = pv.Plotter(
-        off_screen=True, shape=(1, len(shapes)), window_size=[len(shapes) * width, height], border=False
-    )
-    try:
-        whole = cameras.framing_pose(np.vstack([shape.mesh.vertices for shape in shapes]), turning=True)
-        now = _about(pose, whole) if pose is not None else whole
-        bars = []
-        for column, shape in enumerate(shapes):
-            plotter.subplot(0, column)
-            plotter_setup.set_stage(plotter, palette.PAPER)
-            show_shape(plotter, shape, palette.PAPER)
-            surfaces.widen_lines(plotter, scale)
-            annotations.show_title(plotter, LABELS[shape.name], size=10 * scale)
-            bars.append(annotations.ScaleBar(plotter, palette.PAPER, factor=scale))
-        for _ in range(frames):
-            for column in range(len(shapes)):
-                plotter.subplot(0, column)
-                cameras.apply_pose(plotter, now)
-            plotter.render()
-            yield np.array(plotter.screenshot(return_img=True), dtype=np.uint8)
-            now = orbited(now, 2.0 * np.pi / frames / TURN, 0.0)
-        for bar in bars:
-            bar.remove()
-    finally:
-        plotter.close()
-
-
-def _about(pose: CameraPose, whole: CameraPose) -> CameraPose:
-    """The direction of one pose, the middle and scale of another."""
-    step = np.asarray(pose.position) - pose.focal_point
-    reach = np.linalg.norm(np.asarray(whole.position) - whole.focal_point) / np.linalg.norm(step)
-    x, y, z = (float(each) for each in np.asarray(whole.focal_point) + reach * step)
-    return CameraPose((x, y, z), whole.focal_point, pose.view_up, whole.parallel_scale)
 
 
 CELL_SIZE = (420, 400)
@@ -221,12 +159,6 @@ def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path
     return path
 
 
-def turn(shapes: Sequence[SceneShape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
-    """Write a GIF or WebP of the bodies turning once; returns its path."""
-    yield from _apart(N_("Drawing the turntable"), path, _turn, tuple(shapes), pose, scale)
-    return path
-
-
 def draw_figure(
     particle: Mesh,
     fit: Mesh,
@@ -264,10 +196,6 @@ def write_drawn(title: str, path: Path, draw: Callable[..., None], arguments: tu
 
 def _animation(path: Path, particle: Mesh, fit: HarmonicFit, degrees: tuple[int, ...]) -> None:
     degree_animation(particle, fit, degrees, path, LEVEL)
-
-
-def _turn(path: Path, shapes: tuple[SceneShape, ...], pose: CameraPose | None, scale: int) -> None:
-    turntable(shapes, pose, path, scale=scale)
 
 
 def _figure(

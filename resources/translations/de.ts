@@ -1788,10 +1788,6 @@
         <translation>Fit wird gezeichnet</translation>
     </message>
     <message>
-        <source>Drawing the turntable</source>
-        <translation>Drehung wird gezeichnet</translation>
-    </message>
-    <message>
         <source>Drawn</source>
         <translation>Gezogen</translation>
     </message>
@@ -3924,10 +3920,6 @@
         <translation>Eine Oberfläche über einer anderen</translation>
     </message>
     <message>
-        <source>One turn: GIF, WebP, PNG files</source>
-        <translation>Eine Umdrehung: GIF, WebP, PNG-Dateien</translation>
-    </message>
-    <message>
         <source>One weight for each term of the loss, with presets. A weight of 0 leaves a descriptor out. Reset brings the preset back.</source>
         <translation>Ein Gewicht für jeden Term der Verlustfunktion, mit Vorlagen. Das Gewicht 0 lässt einen Deskriptor weg. Zurücksetzen bringt die Vorlage zurück.</translation>
     </message>
@@ -5076,10 +5068,6 @@
         <translation>&amp;Bild speichern …</translation>
     </message>
     <message>
-        <source>Save &amp;turntable …</source>
-        <translation>&amp;Drehung speichern …</translation>
-    </message>
-    <message>
         <source>Save a material card</source>
         <translation>Materialkarte speichern</translation>
     </message>
@@ -5166,10 +5154,6 @@
     <message>
         <source>Save the object classifier for other scans</source>
         <translation>Den Objektklassifikator für andere Scans speichern</translation>
-    </message>
-    <message>
-        <source>Save turntable</source>
-        <translation>Drehung speichern</translation>
     </message>
     <message>
         <source>Save …</source>
@@ -6464,10 +6448,6 @@
         <translation>Die Tabelle ist in der Zwischenablage.</translation>
     </message>
     <message>
-        <source>The turntable is in {path}.</source>
-        <translation>Die Drehung ist in {path}.</translation>
-    </message>
-    <message>
         <source>The views as they are seen</source>
         <translation>Die Ansichten, wie man sie sieht</translation>
     </message>
@@ -6922,10 +6902,6 @@
     <message>
         <source>Wait until the three views are drawn.</source>
         <translation>Warten Sie, bis die drei Ansichten gezeichnet sind.</translation>
-    </message>
-    <message>
-        <source>Wait until the views are drawn.</source>
-        <translation>Warten Sie, bis die Ansichten gezeichnet sind.</translation>
     </message>
     <message>
         <source>Wall friction</source>

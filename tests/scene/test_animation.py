@@ -1,4 +1,4 @@
-"""Bodies that turn, larger pictures whose scale bar stays true, transparency."""
+"""Animated files, larger pictures whose scale bar stays true, transparency."""
 
 import numpy as np
 import pytest
@@ -6,37 +6,16 @@ import pyvista as pv
 from PIL import Image
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import plotter_setup, surfaces
-from regolith_studio.scene.animation import SIZE, save_animation, turntable
+from regolith_studio.scene.animation import save_animation
 from regolith_studio.scene.cameras import apply_pose, framing_pose
 from regolith_studio.scene.figure import VIEW_SIZE, three_views
-from regolith_studio.scene.shapes import FIT, PARTICLE, SceneShape
-
-STICK = icosphere(2).moved(rotation=np.diag([40.0, 6.0, 6.0]))
 
 
 def dark_width(picture):
     """Pixels from the first to the last column that is not white."""
     columns = np.flatnonzero((picture[..., :3] < 215).any(axis=(0, 2)))
     return int(np.ptp(columns)) + 1
-
-
-@pytest.mark.parametrize("ending", [".gif", ".webp"])
-def test_that_a_stick_is_long_from_the_side_and_short_from_its_end(tmp_path, ending):
-    path = tmp_path / f"turning{ending}"
-    shapes = (SceneShape(PARTICLE, STICK), SceneShape(FIT, STICK))
-    turntable(shapes, framing_pose(STICK.vertices, "front"), path, frames=8)
-    widths = []
-    with Image.open(path) as file:
-        assert file.n_frames == 8
-        assert file.size == (2 * SIZE[0], SIZE[1])
-        for frame in (0, 2, 4):
-            file.seek(frame)
-            body = np.array(file.convert("RGB"))[60:300, : SIZE[0]]
-            widths.append(dark_width(body))
-    assert widths[1] < 0.25 * widths[0]
-    assert abs(widths[2] - widths[0]) <= 3
 
 
 def test_that_a_sequence_of_pictures_is_numbered_and_holds_every_frame(tmp_path):

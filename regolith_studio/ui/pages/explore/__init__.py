@@ -140,7 +140,6 @@ PAGE = Page(
             bar="under",
             label=N_("Picture"),
         ),
-        ActionSpec("save_turntable", N_("Save &turntable …"), tip=N_("One turn: GIF, WebP, PNG files")),
         ActionSpec("save_animation", N_("Save &animation of l_max …"), tip=N_("GIF of l_max 0 to 30")),
     ),
 )

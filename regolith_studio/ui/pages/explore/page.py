@@ -30,7 +30,7 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.particle_jobs import FitRequest, check_fit, may_be_far
 from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.messages import N_, join_messages
-from regolith_studio.scene.animation import animate, draw_figure, turn
+from regolith_studio.scene.animation import animate, draw_figure
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.figure import view_titles
 from regolith_studio.scene.shapes import FIT
@@ -71,7 +71,6 @@ ANIMATION_FILTERS = ("GIF (*.gif)", "WebP (*.webp)", N_("Sequence of PNG files (
 SUFFIXES = (".gif", ".webp", ".png")
 SAVED = {
     "figure": N_("The picture is in {path}."),
-    "turntable": N_("The turntable is in {path}."),
     "animation": N_("The animation is in {path}."),
 }
 
@@ -110,19 +109,6 @@ class PictureExport(QObject):
         surfaces = (entry.particle.mesh, results.surface, results.coarsened)
         job = Job(draw_figure, (*surfaces, titles, path, scale, pose, transparent))
         self._context.start(tr("Drawing the figure"), job, self._saved_note("figure", path))
-
-    def save_turntable(self) -> None:
-        """Ask for a file and save an animation of one rotation, in the background."""
-        entry = self._context.session.selected
-        if entry is None or not self._three_views.shapes:
-            self._context.toast.problem(tr("Wait until the views are drawn."))
-            return
-        name, suffix = self._ask_animation(tr("Save turntable"), f"{file_stem(entry.id)}-turning")
-        if name:
-            path = Path(name).with_suffix(suffix)
-            job = Job(turn, (self._three_views.shapes, self._three_views.views["particle"].pose, path))
-            title = tr("Drawing the turntable")
-            self._context.start(title, job, self._saved_note("turntable", path), queue="turntable")
 
     def save_animation(self) -> None:
         """Ask for a file and save an animation of the fit from degree 0 on, in the background."""
@@ -433,7 +419,6 @@ class ExplorePage(PageWidget):
             "change_unit": lambda: self._commands.change_unit(self._session.choices.selected),
             "enlarge": views.enlarge_next,
             "save_picture": self.pictures.save_picture,
-            "save_turntable": self.pictures.save_turntable,
             "save_animation": self.pictures.save_animation,
         }
 
