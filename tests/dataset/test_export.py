@@ -29,7 +29,7 @@ from tests.files import contents
 
 OPTIONS = ExportOptions(n_particles=12, n_spheres=4)
 EXPECTED = {
-    "aspherix", "chrono", "edem", "gltf", "half-spaces", "hoomd", "lammps", "lammps-clumps", "liggghts",
+    "aspherix", "chrono", "edem", "gltf", "half-spaces", "hoomd", "lammps", "liggghts",
     "mujoco", "multi-sphere", "pfc", "rockable", "rocky", "yade",
 }  # fmt: skip
 
@@ -43,7 +43,7 @@ def test_that_all_formats_are_found_by_themselves() -> None:
     assert all(exporter.key == key for key, exporter in EXPORTERS.items())
 
 
-OF_SPHERES = {"lammps-clumps", "liggghts", "pfc"}
+OF_SPHERES = {"liggghts", "pfc"}
 """Formats whose shapes are the spheres of the format multi-sphere, and take as long."""
 
 

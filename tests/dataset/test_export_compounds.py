@@ -180,23 +180,6 @@ def test_that_liggghts_and_pfc_get_mass_and_inertia_of_the_union(dataset: Datase
     assert not trimesh.load_mesh(folder / "meshes" / "shape_00_elbow.stl").is_convex
 
 
-def test_that_lammps_gives_clumps_the_mass_and_inertia_of_their_union(
-    dataset: Dataset, tmp_path: Path, lammps
-) -> None:
-    folder = exported(dataset, "lammps-clumps", tmp_path / "x")
-    done = lammps("-in", "in.particles", "-var", "steps", "0", cwd=folder)
-    assert done.returncode == 0, done.stdout[-2000:]
-    found = np.loadtxt(folder / "body.0.dump", skiprows=9)
-    found = found[np.argsort(found[:, 0])]
-    bodies = pack_on_lattice(dataset, OPTIONS)
-    masses = DENSITY * bodies.scale**3
-    assert found[:, 1:4] == pytest.approx(bodies.position, rel=1e-9, abs=1e-12)
-    assert found[:, 4] == relative(masses, rel=1e-9)
-    for index, which in enumerate(bodies.class_index.tolist()):
-        expected = wanted_moments(dataset, which) * masses[index] * bodies.scale[index] ** 2
-        assert np.sort(found[index, 5:8]) == relative(expected, rel=1e-6)
-
-
 @needs_yade
 def test_that_yade_gives_clumps_the_mass_centre_and_inertia_of_their_union(
     dataset: Dataset, tmp_path: Path

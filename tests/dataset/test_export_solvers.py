@@ -121,15 +121,13 @@ def test_that_mujoco_loads_particles_of_any_size(size: float, tmp_path: Path) ->
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [0.5, 50.0, 5000.0])
-@pytest.mark.parametrize("key", ["lammps", "lammps-clumps"])
-def test_that_lammps_loads_particles_of_any_size(key: str, size: float, tmp_path: Path, lammps) -> None:
+def test_that_lammps_loads_particles_of_any_size(size: float, tmp_path: Path, lammps) -> None:
     dataset, options = of_size(size)
-    folder = exported(dataset, key, tmp_path / "x", options)
+    folder = exported(dataset, "lammps", tmp_path / "x", options)
     done = lammps("-in", "in.particles", "-var", "steps", "20", cwd=folder)
     assert done.returncode == 0, done.stdout[-2000:]
-    if key == "lammps":
-        mass = float(done.stdout.split("total mass ")[-1].split()[0])
-        assert mass == relative(12 * mass_of(options, size), 1e-9)
+    mass = float(done.stdout.split("total mass ")[-1].split()[0])
+    assert mass == relative(12 * mass_of(options, size), 1e-9)
 
 
 @pytest.mark.slow

@@ -147,7 +147,7 @@ EXPORTER = Exporter(
     load_command="cd {shell} && lmp -in in.particles -var steps 100",
     files=_files,
     convex_only=N_(
-        "A body rounded/polyhedron is one polyhedron; the format lammps-clumps can hold compounds."
+        "A body rounded/polyhedron is one polyhedron; the format multi-sphere can hold compounds."
     ),
     alters=N_("LAMMPS rounds edges; facets stay in their planes, corners are lost."),
 )
