@@ -138,3 +138,11 @@ def test_that_the_numbers_at_a_logarithmic_axis_do_not_touch(shown, app, height)
     assert min(gap for gap in gaps if gap > 0.1) >= QFontMetricsF(plot.small_font()).ascent()
     if height == 1200:
         assert "0.7" in words.values()
+
+
+def test_that_numbers_at_an_axis_are_all_written_in_one_way(curve):
+    axis = curve.axes["bottom"]
+    assert axis.tickStrings([0.0, 2e5, 8e5], 1.0, 2e5) == ["0", "200000", "800000"]
+    assert axis.tickStrings([0.0, 2e5, 8e5, 1e6], 1.0, 2e5) == ["0", "2e5", "8e5", "1e6"]
+    assert axis.tickStrings([1.0004e6, 1.0008e6], 1.0, 400.0) == ["1.0004e6", "1.0008e6"]
+    assert axis.tickStrings([-5e-5, 0.0, 5e-5, 1e-4], 1.0, 5e-5) == ["-5e-5", "0", "5e-5", "1e-4"]

@@ -152,7 +152,11 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     assert 9.0 <= radii.min() <= radii.max() <= 11.0
     record = page.drawing.card.record
     (count, ends), source = record.values, record.made_from
-    assert (count, source, record.state) == ("4", "Drawn from ma165", ResultState.CURRENT)
+    assert (count, source, record.state) == (
+        "4",
+        f"Drawn from {page.source.source.currentText()}",
+        ResultState.CURRENT,
+    )
     assert [float(end) for end in ends.split(" – ")] == pytest.approx([radii.min(), radii.max()], rel=0.006)
     page.drawing.seed.setValue(3)
     assert page.drawing.card.record.state is ResultState.STALE

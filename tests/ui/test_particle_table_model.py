@@ -13,9 +13,11 @@ from regolith_studio.imaging.grain_errors import intervals
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.table import (
+    PADDING,
     RIGHT,
     UNSORTED,
     ParticleColumn,
+    ParticleTable,
     ParticleTableModel,
     particle_columns,
 )
@@ -141,3 +143,14 @@ def test_that_the_tool_tip_of_a_number_states_the_interval_of_a_grain_of_a_scan(
     assert of_scan == [f"{value}; {low} to {high} in 90 % of grains of this size and noise", ratio]
     assert of_mesh == [value, ratio]
     made.deleteLater()
+
+
+@pytest.mark.parametrize("width", [140, 260, 700])
+def test_that_names_take_the_room_that_is_left_and_numbers_stand_apart(shown, width):
+    table = ParticleTable(particle_columns("name", "volume", "sphericity", "aspect_ratio"), scrolls=False)
+    table.set_entries([ParticleEntry(name, Particle(name, MESH), None, describe(MESH)) for name in "ab"])
+    table.resize(width, 200)
+    shown(table)
+    listed = [number for number in range(4) if not table.isColumnHidden(number)]
+    assert sum(map(table.columnWidth, listed)) == table.viewport().width()
+    assert all(table.columnWidth(n) >= table.sizeHintForColumn(n) + PADDING for n in listed[1:])

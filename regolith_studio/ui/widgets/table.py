@@ -152,6 +152,10 @@ def _weight_column() -> ParticleColumn:
     )
 
 
+PADDING = 6
+"""Pixels between a number and the column before it, beside those of the style."""
+
+
 class ParticleTableModel(QAbstractTableModel):
     """Particles as rows, sorted and filtered; the column of their health, or else the first, has its icon.
 
@@ -383,7 +387,9 @@ class ParticleTable(_FittedTable):
             self.setColumnHidden(number, False)  # a hidden one has no width
         header.setStretchLastSection(False)
         super().resizeColumnsToContents()
-        self._widths = [header.sectionSize(number) for number in range(header.count())]
+        self._widths = [header.sectionSize(number) + PADDING for number in range(header.count())]
+        for number, width in enumerate(self._widths):
+            header.resizeSection(number, width)
         header.setStretchLastSection(True)
         self._list_columns()
 
@@ -395,7 +401,9 @@ class ParticleTable(_FittedTable):
             room -= 0 if empty else width
             self.setColumnHidden(number, empty or (not self._scrolls and number > 0 and room < 0))
         if not self._scrolls:
-            self.setColumnWidth(0, min(self._widths[0], self.viewport().width()))
+            shown = [number for number in range(len(self._widths)) if not self.isColumnHidden(number)]
+            left = self.viewport().width() - sum(self._widths[number] for number in shown)
+            self.setColumnWidth(0, self._widths[0] + left)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

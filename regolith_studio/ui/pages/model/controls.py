@@ -346,7 +346,7 @@ class DistributionsPanel(QWidget):
             "model_distribution_weighting", tr("Weighting of the particles"), WEIGHTINGS
         )
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
-        self.small = {key: CurvePlot(_axis_label(key), "", "") for key in KEYS}
+        self.small = {key: CurvePlot(_axis_label(key), tr(SHARE), "") for key in KEYS}
         self._together = QWidget()
         grid = QGridLayout(self._together)
         grid.setContentsMargins(0, 0, 0, 0)

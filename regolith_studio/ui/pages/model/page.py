@@ -214,6 +214,11 @@ def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:
             return None
 
 
+def _name_of(source: ShapeSource) -> str:
+    """As the list of sources shows it."""
+    return tr(source.content.label) if isinstance(source.content, MaterialCard) else source.name
+
+
 def drawn_record(drawn: GenerationResult, fitted: ModelFitResult | None) -> ResultRecord:
     """The drawn particles as their card shows them."""
     count, ends, rejected = len(drawn.draws), drawn.radii, drawn.draws.rejected
@@ -226,7 +231,7 @@ def drawn_record(drawn: GenerationResult, fitted: ModelFitResult | None) -> Resu
         seed=seed,
     )
     note = tr("{count:,} draws rejected", count=rejected) + "." if rejected else ""
-    source = tr("Drawn from {name}", name=fitted.source.name) if fitted is not None else ""
+    source = tr("Drawn from {name}", name=_name_of(fitted.source)) if fitted is not None else ""
     return ResultRecord((number_text(count, ","), radii), source, made_with, note=note)
 
 

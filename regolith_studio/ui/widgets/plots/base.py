@@ -307,7 +307,10 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
             self.setLabel(rich, color=colour, **{"font-size": f"{points:.1f}pt"})
 
     def tickStrings(self, values: Sequence[float], scale: float, spacing: float | None) -> list[str]:
-        words = [localized(each) for each in super().tickStrings(values, scale, spacing)]
+        plain = super().tickStrings(values, scale, spacing)
+        if not self.logMode and any("e" in each for each in plain):  # of pyqtgraph: 800000 beside 1e+06
+            plain = [_with_exponent(value * scale) for value in values]
+        words = [localized(each) for each in plain]
         if not self.logMode or spacing is not None:
             return words
         shown = self._digits_with_room()
@@ -341,6 +344,13 @@ class CountAxis(FittedAxis):
         if not (self.whole and levels):
             return levels
         return [level for level in levels if level[0] >= 1.0] or [(1.0, 0.0)]
+
+
+def _with_exponent(value: float) -> str:
+    """A number as tables have it: 1.5e6."""
+    digits, exponent = f"{value:.5e}".split("e")
+    digits = digits.rstrip("0").rstrip(".")
+    return f"{digits}e{int(exponent)}" if value else "0"
 
 
 def fit_text(text: str, font: QFont, width: float) -> tuple[str, float]:
