@@ -88,6 +88,8 @@ def match_materials(
     (those of the target count together), a table of descriptors or of length, width and thickness, or the
     name of a shipped card.
     """
+    if not isinstance(target, str):
+        check_count("The sample", len(target))
     yield from compile_first("describe")
     names = [name for name in (target, *candidates) if isinstance(name, str)]
     chords = any(Path(name).suffix.lower() in SUFFIXES for name in names)

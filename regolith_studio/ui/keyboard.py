@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
     QKeySequenceEdit,
     QLabel,
     QLineEdit,
+    QListWidget,
     QPushButton,
     QScrollArea,
     QSpinBox,
@@ -38,7 +39,7 @@ from regolith_studio.ui.widgets.labels import heading, hint_label
 
 FOCUSED = "focused"
 """Property that the style sheet asks for; parts around a widget that have it are framed with it."""
-FRAMED = (QAbstractButton, QScrollArea, QTabBar, QTableView)
+FRAMED = (QAbstractButton, QListWidget, QScrollArea, QTabBar, QTableView)
 """Kinds of widgets whose frame is the style sheet's; all others are framed by Qt's own style."""
 AROUND = 2
 """Levels above a widget that may frame it."""

@@ -1664,6 +1664,14 @@
         <translation>Richtung des Schnitts</translation>
     </message>
     <message>
+        <source>Distance</source>
+        <translation>Abstand</translation>
+    </message>
+    <message>
+        <source>Distance / noise</source>
+        <translation>Abstand / Rauschen</translation>
+    </message>
+    <message>
         <source>Distance from the middle of the particle; the frame in the views can be dragged as well.</source>
         <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
     </message>
@@ -1674,10 +1682,6 @@
     <message>
         <source>Distances and masses</source>
         <translation>Abstände und Massen</translation>
-    </message>
-    <message>
-        <source>Distances in floors; 1 is the scatter of the sample itself.</source>
-        <translation>Abstände in Rauschgrenzen; 1 ist die Streuung der Probe selbst.</translation>
     </message>
     <message>
         <source>Distances of the draws</source>
@@ -1902,6 +1906,10 @@
     <message>
         <source>Energy distance</source>
         <translation>Energiedistanz</translation>
+    </message>
+    <message>
+        <source>Energy distance to the sample over its noise, which one of twenty samples of the same material exceeds; a material below 1 cannot be told from the sample</source>
+        <translation>Energiedistanz zur Probe über ihrem Rauschen, das eine von zwanzig Proben desselben Materials überschreitet; ein Material unter 1 ist von der Probe nicht zu unterscheiden</translation>
     </message>
     <message>
         <source>Engine</source>
@@ -2720,10 +2728,6 @@
         <translation>Hysterese: Voxel ab dieser Wahrscheinlichkeit gehören zu einem Korn, wenn sie mit Voxeln ab der Schwelle zusammenhängen; 0 für keine.</translation>
     </message>
     <message>
-        <source>In floors</source>
-        <translation>In Rauschgrenzen</translation>
-    </message>
-    <message>
         <source>In size classes</source>
         <translation>In Größenklassen</translation>
     </message>
@@ -3472,8 +3476,8 @@
         <translation>Spiegelbilder</translation>
     </message>
     <message>
-        <source>Mixture</source>
-        <translation>Mischung</translation>
+        <source>Mixture / noise</source>
+        <translation>Mischung / Rauschen</translation>
     </message>
     <message>
         <source>Mixture of Gaussian fields</source>
@@ -3572,8 +3576,8 @@
         <translation>Nanometer (nm)</translation>
     </message>
     <message>
-        <source>Nearest</source>
-        <translation>Nächstes</translation>
+        <source>Nearest / noise</source>
+        <translation>Nächstes / Rauschen</translation>
     </message>
     <message>
         <source>Nearest particles whose ellipsoid may be used.</source>
@@ -3656,8 +3660,8 @@
         <translation>Kein Material ist gewählt.</translation>
     </message>
     <message>
-        <source>No mixture of these matches the sample; grams are those of the nearest one.</source>
-        <translation>Keine Mischung aus ihnen passt zur Probe; die Gramm gelten für die nächste.</translation>
+        <source>No mixture matches the sample; grams are of the nearest one.</source>
+        <translation>Keine Mischung trifft die Probe; die Gramm gelten für die nächste.</translation>
     </message>
     <message>
         <source>No open particle comes from a file: open some, or choose a recipe file.</source>

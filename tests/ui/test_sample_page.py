@@ -169,24 +169,32 @@ def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path,
     assert page.plots.currentWidget() is panel
     panel.start()  # twelve shipped particles
     wait(lambda: panel.card.record.state is ResultState.FAILED)
-    assert "12 particles; a comparison needs at least 20" in panel.card.record.note
+    assert "The sample has 12 particles; a comparison needs at least 20" in panel.card.record.note
     sample = (*fine[:20], *coarse[:60])
     monkeypatch.setattr(Session, "open_particles", property(lambda _: sample))
     panel.start()
     wait(lambda: panel.found is not None, SECONDS)
     assert panel.found.match.parts[0].number_share == pytest.approx(0.25, abs=0.15)
     assert save.isEnabled()
-    assert panel.table.rows.rowCount() == 3
+    assert panel.card.record.values[1] == "< 1"
+    texts = [[panel.table.rows.item(row, at).text() for at in range(8)] for row in range(3)]
+    assert [row[0] for row in texts] == ["coarse.csv", "fine.csv", "mixture"]
+    assert float(texts[0][2]) < float(texts[1][2])
+    assert [float(row[2]) >= 0 for row in texts] == [True] * 3
+    assert texts[2][1] == "100"
+    headings = [panel.table.rows.horizontalHeaderItem(at).text() for at in range(8)]
+    assert headings[3:] == ["Distance / noise", "r_eq [%]", "S [%]", "AR [%]", "Particles"]
     assert not panel.picture.pixmap().isNull()
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path / "out"))
     panel.save()
     wait(lambda: (tmp_path / "out" / "match.csv").is_file())
-    assert panel.card.record.note.startswith("Distances in floors")
+    assert panel.card.record.note == ""
+    assert panel.card.record.made_with.startswith("r_eq ")
     sample = fine[:30]
     panel.candidates.takeItem(0)
     panel.start()
     wait(lambda: panel.found.match.mixture.n_particles == 60, SECONDS)
-    wait(lambda: panel.card.record.note.startswith("No mixture of these matches the sample"))
+    wait(lambda: panel.card.record.note.startswith("No mixture matches the sample"))
 
 
 @pytest.mark.slow

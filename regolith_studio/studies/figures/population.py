@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import write_table
@@ -173,7 +173,7 @@ def _label(study: PopulationStudy, key: str) -> str:
 
 
 def matching_figure(match: Match) -> Figure:
-    """Energy distances in floors, masses of the mixture, and quantiles of the size by mass."""
+    """Energy distances over their noise, masses of the mixture, and quantiles of the size by mass."""
     parts = (*match.parts, match.mixture)
     rows, names = np.arange(len(parts)), [as_written(part.name) for part in parts]
     figure = Figure(figsize=(11, 1.8 + 0.35 * len(parts)), layout="constrained")
@@ -187,11 +187,14 @@ def matching_figure(match: Match) -> Figure:
             masses.barh(row, 100 * part.mass_share, color="#e69f00")
             masses.plot([100 * end for end in part.mass_interval], [row, row], color="black")
     near.axvspan(-1, 1, color="#e4e4e4")
-    near.set_xlabel(f"energy distance to {as_written(match.target)}, in floors")
+    near.set_xlabel(f"energy distance to {as_written(match.target)} / noise")
     masses.set_xlabel("mass in the mixture, %")
     for size in match.target_sizes:
         sizes.axvline(size, color="#888888", linestyle=":")
     sizes.set(xscale="log", xlabel=f"{match.keys[0].replace('_', ' ')} (µm) of\n10, 50 and 90 % of the mass")
+    sizes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    sizes.xaxis.set_major_formatter("{x:g}")
+    sizes.xaxis.set_minor_locator(NullLocator())
     near.set_yticks(rows, names)
     near.set_ylim(len(parts) - 0.5, -0.5)
     return figure

@@ -42,7 +42,7 @@ from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
 from regolith_studio.ui.widgets.fields import ElidedComboBox, choice
-from regolith_studio.ui.widgets.labels import hint_label, rich_symbol, short_number
+from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import FontRowHeight, TextTable, definition
@@ -374,7 +374,10 @@ def _two_lines(column: Column) -> str:
 
 
 FILTER = N_("Meshes and tables (*.stl *.ply *.obj *.zip *.csv *.tsv *.txt)")
-HEADINGS = (N_("Material"), N_("Particles"), N_("In floors"), N_("g in 100 g"))
+NOISE = N_(
+    "Energy distance to the sample over its noise, which one of twenty samples of the same material exceeds; "
+    "a material below 1 cannot be told from the sample"
+)
 
 
 class MatchPanel(QWidget):
@@ -386,9 +389,10 @@ class MatchPanel(QWidget):
         self._context = context
         self._found: DrawnMatch | None = None
         self._picture = QPixmap()
-        self.card = ResultView(
-            "match_card", (tr("Nearest"), tr("Mixture")), start=tr("Match"), again=tr("Match again"), lines=2
-        )
+        captions = tr("Nearest / noise"), tr("Mixture / noise")
+        self.card = ResultView("match_card", captions, start=tr("Match"), again=tr("Match again"))
+        for place, caption in enumerate(captions):
+            self.card.caption(place, caption, tr(NOISE))
         spoken = tr("Materials that are compared with the sample")
         self.candidates = named(QListWidget(), "match_candidates", spoken)
         self.cards = named(ElidedComboBox(), "match_cards", tr("Add a material card"))
@@ -396,7 +400,7 @@ class MatchPanel(QWidget):
         units = {key: LABELS[key] for key in UNITS if key != "voxel"}
         self.unit = choice("match_unit", spoken, units)
         self.unit.setToolTip(spoken)
-        self.table = TextTable("match_table", tr("Distances and masses"), [tr(each) for each in HEADINGS])
+        self.table = TextTable("match_table", tr("Distances and masses"), _headings())
         self.picture = hint_label(
             tr(
                 "How near other materials are to the sample, and how many grams of each make the mixture "
@@ -450,18 +454,21 @@ class MatchPanel(QWidget):
         self._found = found
         self._saving.setEnabled(True)
         match = found.match
-        self.table.set_rows([_cells(part) for part in (*match.parts, match.mixture)], _tips(found))
+        self.table.rows.setHorizontalHeaderLabels(_headings(match.keys))
+        self.table.rows.setColumnCount(len(_headings(match.keys)))
+        parts = (*sorted(match.parts, key=lambda part: part.energy), match.mixture)
+        self.table.set_rows(
+            [_cells(part) for part in parts], [_shape_distances(part, "\n") for part in parts]
+        )
         self._picture.loadFromData(found.picture)
         self._scale()
         for note in found.notes:
             self._context.toast.note(note)
         for problem in found.problems:
             self._context.toast.problem(problem.with_path)
-        values = tuple(_in_floors(part) for part in (match.nearest, match.mixture))
-        note = tr("Distances in floors; 1 is the scatter of the sample itself.")
-        if not match.is_reached:
-            note = tr("No mixture of these matches the sample; grams are those of the nearest one.")
-        return ResultRecord(values, match.nearest.name, note=note)
+        note = "" if match.is_reached else tr("No mixture matches the sample; grams are of the nearest one.")
+        values = tuple(_over_noise(part) for part in (match.nearest, match.mixture))
+        return ResultRecord(values, match.nearest.name, _shape_distances(match.nearest, ", "), note=note)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -476,7 +483,7 @@ class MatchPanel(QWidget):
         self.cards.addItem(tr("Add a card"), "")
         for name, card in materials().items():
             self.cards.addItem(tr(card.label), name)
-        self.cards.activated.connect(lambda _row: self.add([str(self.cards.currentData())]))
+        self.cards.activated.connect(self._add_card)
         buttons = []
         for name, text, act in (
             ("match_files", tr("Add files …"), self.ask_files),
@@ -491,7 +498,7 @@ class MatchPanel(QWidget):
         lists = QWidget()
         rows = control_row(self.cards, self.unit), control_row(*buttons[:3])
         vbox((self.candidates, 1), *rows, parent=lists)
-        upper = side_by_side([lists, self.table], [260, 340], stretch=1)
+        upper = side_by_side([lists, self.table], [200, 400], stretch=1)
         results = stacked([upper, self.picture], [160, 160], stretch=1)
         vbox(self.card, (results, 1), parent=self, margins=(4, 4, 4, 4))
         self.card.add(self._saving)
@@ -501,25 +508,41 @@ class MatchPanel(QWidget):
         start = str(self._context.recall("folder", str(Path.home())))
         self.add([QFileDialog.getExistingDirectory(self, tr("Folder of meshes"), start)])
 
+    def _add_card(self) -> None:
+        self.add([str(self.cards.currentData())])
+        self.cards.setCurrentIndex(0)
+
     def _remove(self) -> None:
         for item in self.candidates.selectedItems():
             self.candidates.takeItem(self.candidates.row(item))
         self.add([])
 
 
-def _in_floors(part: MatchedPart) -> str:
-    return number_text(part.energy / part.energy_floor, ".2f")
+def _headings(keys: Sequence[str] = ()) -> list[str]:
+    """Of the columns; `keys` are those of the descriptors."""
+    shapes = [f"{plain_symbol(CATALOGUE[key].symbol)} [%]" for key in keys]
+    first = tr("Material"), tr("g in 100 g"), tr("Distance"), tr("Distance / noise")
+    return [*first, *shapes, tr("Particles")]
 
 
 def _cells(part: MatchedPart) -> tuple[str, ...]:
     low, high = part.mass_interval
-    mass, *ends = (number_text(100 * share, ".1f") for share in (part.mass_share, low, high))
-    return part.name, f"{part.n_particles}", _in_floors(part), f"{mass} ({ends[0]} – {ends[1]})"
+    mass, *ends = (number_text(100 * share, ".0f") for share in (part.mass_share, low, high))
+    grams = mass if low == high else f"{mass} ({ends[0]} – {ends[1]})"
+    # The unbiased estimate scatters about zero for the same material.
+    distance = number_text(max(part.energy, 0.0), ".3f")
+    shapes = (number_text(100 * value, ".1f") for value in part.wasserstein.values())
+    return part.name, grams, distance, _over_noise(part), *shapes, number_text(part.n_particles, ",")
 
 
-def _tips(found: DrawnMatch) -> list[str]:
-    """Distances in each descriptor, in percent of the mean of the sample."""
-    return [
-        "\n".join(f"{key}: {number_text(100 * value, '.1f')} %" for key, value in part.wasserstein.items())
-        for part in (*found.match.parts, found.match.mixture)
-    ]
+def _over_noise(part: MatchedPart) -> str:
+    ratio = part.energy / part.energy_floor
+    return "< 1" if ratio <= 1 else number_text(ratio, ".1f")
+
+
+def _shape_distances(part: MatchedPart, between: str) -> str:
+    """Wasserstein distances in each descriptor, in percent of the mean of the sample."""
+    values = part.wasserstein.items()
+    return between.join(
+        f"{CATALOGUE[key].symbol} {number_text(100 * value, '.1f')} %" for key, value in values
+    )
