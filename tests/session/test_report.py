@@ -189,6 +189,18 @@ def test_that_the_page_holds_the_meshes_that_can_be_turned() -> None:
     assert "<script>" not in report_page([ReportSection("Fig. 2")])
 
 
+def test_that_on_paper_heads_stay_with_their_tables_and_nobody_is_told_to_drag() -> None:
+    page = report_page([ReportSection("Fig. 2", meshes={"cube": CUBE})])
+    printed = re.search(r"@media print \{(.*)\}\s*</style>", page, re.DOTALL)
+    assert printed is not None
+    rules = dict(re.findall(r"([^{}]+?) \{ ([^{}]+) \}", printed[1].replace("\n", " ")))
+    rules = {names.strip(): rule for names, rule in rules.items()}
+    assert rules[".screen"] == "display: none"
+    assert 'class="screen">Drag to turn' in page
+    assert rules["h1, h2, h3"] == "break-after: avoid"
+    assert rules["figure, tr"] == "break-inside: avoid"
+
+
 def test_that_fine_meshes_are_coarser_in_the_page() -> None:
     fine = icosphere(5)
     assert len(fine.faces) > MAX_TRIANGLES

@@ -189,7 +189,7 @@ def test_that_other_materials_are_compared_with_the_sample(page, wait, tmp_path,
     panel.save()
     wait(lambda: (tmp_path / "out" / "match.csv").is_file())
     assert panel.card.record.note == ""
-    assert panel.card.record.made_with.startswith("r_eq ")
+    assert panel.card.record.made_from == "coarse.csv"
     sample = fine[:30]
     panel.candidates.takeItem(0)
     panel.start()

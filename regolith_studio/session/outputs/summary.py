@@ -28,7 +28,13 @@ table { border-collapse: collapse; margin: 0.5rem 0 1.5rem; font-variant-numeric
 th, td { border-bottom: 1px solid #ddd; padding: 0.2rem 0.7rem; text-align: right }
 th:first-child, td:first-child, .text { text-align: left }
 img { max-width: 100% } figure { margin: 1rem 0 2rem } figcaption { color: #555 }
-@media print { table { font-size: 65% } th, td { padding: 0.1rem 0.3rem } }
+@media print {
+  body { margin: 0 } .screen { display: none }
+  table { font-size: 65% } th, td { padding: 0.1rem 0.3rem }
+  h1, h2, h3 { break-after: avoid } h2 + p, h3 + p { break-after: avoid }
+  figure, tr { break-inside: avoid } thead { display: table-header-group }
+  img { max-height: 22cm }
+}
 """
 _SHOWN = ("equivalent_radius", "surface_area", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 

@@ -90,8 +90,8 @@ def _turned(meshes: Mapping[str, Mesh]) -> str:
     ]
     return (
         '<div class="turned" style="display: flex; flex-wrap: wrap; gap: 1rem">'
-        f"{''.join(cells)}</div><p>Drag to turn, or use the arrow keys; Ctrl and the wheel zoom, a double "
-        "click resets.</p>"
+        f'{"".join(cells)}</div><p class="screen">Drag to turn, or use the arrow keys; Ctrl and the '
+        "wheel zoom, a double click resets.</p>"
     )
 
 

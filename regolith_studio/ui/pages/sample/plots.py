@@ -36,7 +36,7 @@ from regolith_studio.session.sample_table import has_weights, statistics_distrib
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.studies.matching import MatchedPart
 from regolith_studio.ui.dialogs.files import LABELS, FolderDialog
-from regolith_studio.ui.layout import control_row, named, side_by_side, stacked, vbox
+from regolith_studio.ui.layout import control_row, hbox, named, stacked, vbox
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.theme import Theme
@@ -457,9 +457,7 @@ class MatchPanel(QWidget):
         self.table.rows.setHorizontalHeaderLabels(_headings(match.keys))
         self.table.rows.setColumnCount(len(_headings(match.keys)))
         parts = (*sorted(match.parts, key=lambda part: part.energy), match.mixture)
-        self.table.set_rows(
-            [_cells(part) for part in parts], [_shape_distances(part, "\n") for part in parts]
-        )
+        self.table.set_rows([_cells(part) for part in parts], [_shape_distances(part) for part in parts])
         self._picture.loadFromData(found.picture)
         self._scale()
         for note in found.notes:
@@ -468,7 +466,7 @@ class MatchPanel(QWidget):
             self._context.toast.problem(problem.with_path)
         note = "" if match.is_reached else tr("No mixture matches the sample; grams are of the nearest one.")
         values = tuple(_over_noise(part) for part in (match.nearest, match.mixture))
-        return ResultRecord(values, match.nearest.name, _shape_distances(match.nearest, ", "), note=note)
+        return ResultRecord(values, match.nearest.name, note=note)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -495,12 +493,11 @@ class MatchPanel(QWidget):
             buttons[-1].clicked.connect(act)
         self._saving = buttons[-1]
         self._saving.setEnabled(False)
-        lists = QWidget()
-        rows = control_row(self.cards, self.unit), control_row(*buttons[:3])
-        vbox((self.candidates, 1), *rows, parent=lists)
-        upper = side_by_side([lists, self.table], [200, 400], stretch=1)
-        results = stacked([upper, self.picture], [160, 160], stretch=1)
-        vbox(self.card, (results, 1), parent=self, margins=(4, 4, 4, 4))
+        controls, materials_row = QWidget(), QWidget()
+        vbox(control_row(self.cards, self.unit), control_row(*buttons[:3]), parent=controls).addStretch(1)
+        hbox((self.candidates, 1), (controls, 1), parent=materials_row)
+        parts = [materials_row, self.table, self.picture]
+        vbox(self.card, (stacked(parts, [60, 150, 130], stretch=2), 1), parent=self, margins=(4, 4, 4, 4))
         self.card.add(self._saving)
         self.add([])
 
@@ -540,9 +537,9 @@ def _over_noise(part: MatchedPart) -> str:
     return "< 1" if ratio <= 1 else number_text(ratio, ".1f")
 
 
-def _shape_distances(part: MatchedPart, between: str) -> str:
+def _shape_distances(part: MatchedPart) -> str:
     """Wasserstein distances in each descriptor, in percent of the mean of the sample."""
-    values = part.wasserstein.items()
-    return between.join(
-        f"{CATALOGUE[key].symbol} {number_text(100 * value, '.1f')} %" for key, value in values
+    return "\n".join(
+        f"{tr(CATALOGUE[key].label)}: {number_text(100 * value, '.1f')} %"
+        for key, value in part.wasserstein.items()
     )
