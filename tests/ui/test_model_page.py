@@ -369,9 +369,9 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     assert words.endswith("1 Teilung, je Anpassung 2 Mal 20 gezogen, Startwert 0.")
     wanted = column_texts(page.evaluation.tables["targets"], 4)
     assert {text.split()[0] for text in wanted} == {"mindestens", "höchstens"}
-    values = {"name": Message("Mixture of fields"), "split": 2, "draw": 3}
+    values = {"name": Message("Mixture of Gaussian fields"), "split": 2, "draw": 3}
     step = Message("{name}, split {split}, draw {draw}", **values)
-    assert translate(step) == "Mischung von Feldern, Teilung 2, Ziehung 3"
+    assert translate(step) == "Mischung von Gaußfeldern, Teilung 2, Ziehung 3"
     assert (
         translate(Message("noise of sampling, split {split}", split=30))
         == "Rauschen der Stichprobe, Teilung 30"
