@@ -7,6 +7,7 @@ import numpy as np
 
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
@@ -54,7 +55,7 @@ def quadric_half_spaces(target: Target, n_facets: int) -> HalfSpaces:
     Raises
     ------
     GeometryError
-        If the decimated hull does not hold the particle's centroid inside all of its planes.
+        If the planes that hold the particle's centroid inside bound no solid.
     """
     mesh = decimated_hull(target, n_facets)
     # Triangles without area have no normal, and half-spaces must hold the centroid.
@@ -62,6 +63,12 @@ def quadric_half_spaces(target: Target, n_facets: int) -> HalfSpaces:
     normals = mesh.face_area_vectors[sound] / mesh.face_areas[sound, None]
     offsets = np.einsum("ij,ij->i", normals, mesh.triangles[sound, 0])
     inside = offsets > 1e-6
-    if np.count_nonzero(inside) < 4:
-        raise GeometryError("The decimated convex hull does not hold the particle's centroid inside.")
-    return HalfSpaces(normals[inside], offsets[inside])
+    try:
+        half_spaces = HalfSpaces(normals[inside], offsets[inside])
+        ConvexPolyhedron.from_half_spaces(half_spaces)
+    except GeometryError as error:
+        raise GeometryError(
+            f"The planes of the convex hull decimated to {n_facets} triangles bound no solid about the"
+            " particle's centroid: ask for more facets, or take the exact method."
+        ) from error
+    return half_spaces

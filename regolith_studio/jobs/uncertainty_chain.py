@@ -368,7 +368,7 @@ class GrainSample:
             coarsen_particle(particle, self.chain.request(levels), at or 0)
         )
         if outcome.coarsened is None:
-            raise GeometryError(outcome.problem)
+            raise GeometryError(f"{particle.name}: {outcome.problem}")
         found = describe(outcome.coarsened.polyhedron, KEYS)
         area = found["surface_area"] / found["volume"] ** (2 / 3)
         shape = np.array([area, found["sphericity"], found["aspect_ratio"]])

@@ -300,6 +300,14 @@ def test_that_a_hull_with_too_few_triangles_is_refused_by_the_baseline() -> None
         coarsen(icosphere(0), 50, "quadric")
 
 
+@pytest.mark.parametrize("method", ["quadric", "annealing"])
+def test_that_a_decimated_hull_whose_planes_bound_no_solid_is_one_sentence(method: str) -> None:
+    rng = np.random.default_rng(15)
+    points = rng.normal(size=(int(rng.integers(8, 60)), 3)) * (1.0, rng.uniform(0.2, 1), rng.uniform(0.1, 1))
+    with pytest.raises(GeometryError, match=r"to 6 triangles bound no solid .* more facets"):
+        coarsen(Mesh(points, np.empty((0, 3), dtype=np.int64)).hull, 6, method)
+
+
 def test_that_a_mesh_inside_out_is_turned(particle: Mesh, exact: CoarseningResult) -> None:
     turned = Target.of(Mesh(particle.vertices, particle.faces[:, ::-1]))
     assert turned.descriptors["volume"] == pytest.approx(1.0)
