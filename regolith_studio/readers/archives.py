@@ -23,6 +23,8 @@ from regolith_studio.readers.sandbox.parent import (
 )
 from regolith_studio.readers.zip_members import SUFFIX, Place, left_out_sentence
 
+WEIGHTS_FILE = "particles.csv"
+"""Weights of the meshes in a folder, written by ``extract``."""
 MAX_DEPTH = 4
 """Of archives in archives."""
 MAX_ARCHIVES = 1000
@@ -77,10 +79,13 @@ class ArchiveContent:
 
     They are in the order of their names, those of a compressed archive in an archive as they lie in it: that
     one can only be unpacked from its beginning on, which any other order would do once for each mesh.
+
+    ``tables``: names of the tables of weights, which are not read.
     """
 
     members: tuple[ArchiveMember, ...]
     problems: tuple[tuple[str, str], ...]
+    tables: tuple[str, ...] = ()
 
 
 def is_archive(path: Path) -> bool:
@@ -111,7 +116,7 @@ def _content(path: Path, _size: int, _time: int) -> ArchiveContent:
     if walk.beyond:
         reason = f"more than {MAX_DEPTH} archives in each other or {MAX_ARCHIVES:,} in one are not read"
         walk.problems.append((str(path), f"{display_name(path)} {left_out_sentence(reason, walk.beyond)}"))
-    return ArchiveContent(members, tuple(walk.problems))
+    return ArchiveContent(members, tuple(walk.problems), tuple(walk.tables))
 
 
 @dataclass
@@ -121,6 +126,7 @@ class _Walk:
     path: Path
     problems: list[tuple[str, str]] = field(default_factory=list)
     beyond: list[str] = field(default_factory=list)
+    tables: list[str] = field(default_factory=list)
     n_opened: int = 0
 
     def members(self, chain: tuple[Place, ...], prefix: str) -> Iterator[ArchiveMember]:
@@ -130,7 +136,9 @@ class _Walk:
         self.problems += [(str(here), f"{display_name(here)} {sentence}") for sentence in refused]
         for name, place in _in_order(names, places, all(each.method == ZIP_STORED for each in chain)):
             inner = (*chain, place)
-            if not is_archive(Path(name)):
+            if name.lower().endswith(".csv"):
+                self.tables += [prefix + name] if PurePosixPath(name).name == WEIGHTS_FILE else []
+            elif not is_archive(Path(name)):
                 yield ArchiveMember(self.path, inner, prefix + name)
             elif len(inner) > MAX_DEPTH or self.n_opened == MAX_ARCHIVES:
                 self.beyond.append(prefix + name)
@@ -153,7 +161,7 @@ def _listed(path: Path, chain: tuple[Place, ...], prefix: str) -> tuple[list[str
     size = chain[-1].size if chain else checked_size(path, None)
     more = size * SECONDS_PER_BYTE + _passing(chain)
     options: dict[str, Any] = {"archive": str(path.absolute()), "chain": chain}
-    options["suffixes"] = sorted({*mesh_suffixes(), SUFFIX})
+    options["suffixes"] = sorted({*mesh_suffixes(), SUFFIX, ".csv"})
     answer = shared_sandbox().request_within(
         "archive", path / prefix, BASE_SECONDS + more, 10.0 + more, **options
     )

@@ -18,8 +18,14 @@ from regolith_studio.geometry.topology import merged_vertices
 from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.file_names import file_stem, name_key, natural_key, unique_name
 from regolith_studio.io.tables import read_csv
-from regolith_studio.messages import N_, count_message
-from regolith_studio.readers.archives import ArchiveMember, archive_content, archive_of, is_archive
+from regolith_studio.messages import N_, Message, count_message
+from regolith_studio.readers.archives import (
+    WEIGHTS_FILE,
+    ArchiveMember,
+    archive_content,
+    archive_of,
+    is_archive,
+)
 from regolith_studio.readers.coefficient_tables import (
     DEFAULT_TABLE_READING,
     TABLE_SUFFIXES,
@@ -392,9 +398,10 @@ def _all_files(paths: Sequence[Path]) -> Iterator[MeshFile]:
 def left_out(paths: Sequence[str | Path]) -> list[str]:
     """For each folder a sentence about the files in it that are no meshes by their names; none without such.
 
-    Documents, pictures and tables that lie beside meshes are not mentioned.
+    Documents, pictures and tables that lie beside meshes are not mentioned, but tables of weights that give
+    none are.
     """
-    sentences: list[str] = []
+    sentences: list[str] = list(_tables_without_weights([Path(path) for path in paths]))
     for folder in (Path(path) for path in paths if Path(path).is_dir()):
         read = {file.path for file in _in_folder(folder, False)}
         names = [
@@ -416,6 +423,29 @@ def left_out(paths: Sequence[str | Path]) -> list[str]:
                 )
             )
     return sentences
+
+
+def _tables_without_weights(paths: Sequence[Path]) -> Iterator[str]:
+    """A sentence for each table that has the name of one of weights, and whose weights do not count."""
+    files = [file for path in paths if not archive_of(path) for file in _all_files([path])]
+    for folder in dict.fromkeys(file.path.parent for file in files):
+        if (folder / WEIGHTS_FILE).is_file() and not read_weights(folder):
+            sentence = N_(
+                "{folder}: {table} has no columns name and weight with positive numbers, so every particle "
+                "counts once."
+            )
+            yield Message(sentence, folder=display_name(folder), table=WEIGHTS_FILE)
+    for archive in dict.fromkeys(file.path for file in files if is_archive(file.path)):
+        try:
+            tables = archive_content(archive).tables
+        except FileError:
+            continue  # it is reported when the archive is read
+        if tables:
+            sentence = N_(
+                "{archive}: {table} is not read from an archive, so every particle counts once; unpack it to "
+                "use its weights."
+            )
+            yield Message(sentence, archive=display_name(archive), table=printable(tables[0]))
 
 
 def _hide(folders: list[str]) -> bool:
@@ -445,7 +475,6 @@ def _log_problem(path: Path, sentence: str) -> None:
     _log.warning("%s: %s", path, sentence)
 
 
-WEIGHTS_FILE = "particles.csv"
 MAX_TABLE_BYTES = 256 * 1024**2
 
 

@@ -8572,6 +8572,10 @@
         <translation>{angle:.1f}° ± {error:.1f}° gewünscht</translation>
     </message>
     <message>
+        <source>{archive}: {table} is not read from an archive, so every particle counts once; unpack it to use its weights.</source>
+        <translation>{archive}: {table} wird nicht aus einem Archiv gelesen, deshalb zählt jedes Partikel einmal; entpacken Sie es, um seine Gewichte zu verwenden.</translation>
+    </message>
+    <message>
         <source>{at:,} of {total:,}</source>
         <translation>{at:,} von {total:,}</translation>
     </message>
@@ -8878,6 +8882,10 @@
     <message>
         <source>{folder}: left out {count} files that no reader of meshes takes: {names}.</source>
         <translation>{folder}: {count} Dateien ausgelassen, die kein Leser für Netze annimmt: {names}.</translation>
+    </message>
+    <message>
+        <source>{folder}: {table} has no columns name and weight with positive numbers, so every particle counts once.</source>
+        <translation>{folder}: {table} hat keine Spalten name und weight mit positiven Zahlen, deshalb zählt jedes Partikel einmal.</translation>
     </message>
     <message>
         <source>{formats} written to {folder}.</source>

@@ -8,7 +8,14 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.particles import FileProblem, find_files, read_each, read_mesh, read_particles
+from regolith_studio.readers.particles import (
+    FileProblem,
+    find_files,
+    left_out,
+    read_each,
+    read_mesh,
+    read_particles,
+)
 
 
 def packed(members: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
@@ -177,3 +184,24 @@ def test_that_members_that_share_their_bytes_are_refused(tmp_path):
     path.write_bytes(content[: second + 42] + bytes(4) + content[second + 46 :])
     with pytest.raises(FileError, match="members that overlap"):
         read_particles([path])
+
+
+def test_that_tables_of_weights_that_do_not_count_are_noted(tmp_path, cube):
+    stl = cube.binary_stl()
+    packed_table = tmp_path / "packed.zip"
+    packed_table.write_bytes(
+        packed({"a/p1.stl": stl, "a/particles.csv": b"name,weight\np1,2\n", "b.csv": b"1"})
+    )
+    (tmp_path / "loose").mkdir()
+    (tmp_path / "loose" / "p1.stl").write_bytes(stl)
+    table = tmp_path / "loose" / "particles.csv"
+    table.write_text("name,volume\np1,3\n")
+    assert [file.path.name for file in find_files([packed_table], [])] == ["p1.stl"]
+    assert left_out([packed_table, tmp_path / "loose"]) == [
+        "loose: particles.csv has no columns name and weight with positive numbers, so every particle counts "
+        "once.",
+        "packed.zip: a/particles.csv is not read from an archive, so every particle counts once; unpack it "
+        "to use its weights.",
+    ]
+    table.write_text("name,weight\np1,3\n")
+    assert left_out([tmp_path / "loose"]) == []
