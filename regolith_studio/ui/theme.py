@@ -237,6 +237,7 @@ QStatusBar {{ border-top: 1px solid palette(mid); }}
 QStatusBar::item {{ border: none; }}
 QToolBar {{ border: none; border-bottom: 1px solid palette(mid); spacing: 2px; padding: 3px 6px; }}
 QToolBar QToolButton {{ padding: 3px 5px; border-radius: 4px; border: 1px solid transparent; }}
+QToolBar QToolBarExtension {{ padding: 0; }}
 QToolBar QToolButton:hover {{ background: palette(button); border-color: palette(mid); }}
 QToolBar QToolButton:checked {{ background: palette(base); border-color: palette(mid); }}
 QFrame[role="sidebar"] {{ background: palette(base); border-right: 1px solid palette(mid); }}

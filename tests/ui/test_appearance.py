@@ -6,6 +6,7 @@ import pytest
 from PySide6.QtCore import QEvent, QObject, QPoint
 from PySide6.QtGui import QColor, QFont, QFontMetrics
 from PySide6.QtWidgets import (
+    QApplication,
     QCheckBox,
     QDialog,
     QDialogButtonBox,
@@ -17,6 +18,7 @@ from PySide6.QtWidgets import (
     QSplitter,
     QStyle,
     QStyleOptionButton,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -344,3 +346,15 @@ def test_that_a_line_of_text_is_as_high_as_its_font_in_a_spin_box(app, shown, pe
     panel.resize(200, panel.minimumSizeHint().height())
     app.processEvents()
     assert field.lineEdit().height() >= field.fontMetrics().height()
+
+
+def test_that_a_tool_bar_without_room_shows_where_the_rest_of_it_is(shown, preferences):
+    preferences.window = preferences.window | {FONT_SIZE: 150}
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1000, 700)
+    more = window.menus.bar.findChild(QToolButton, "qt_toolbar_ext_button")
+    QApplication.processEvents()
+    assert more.isVisible()
+    image = more.grab().toImage()
+    shades = {image.pixelColor(x, y).lightness() for x in range(image.width()) for y in range(image.height())}
+    assert max(shades) - min(shades) > 60

@@ -374,6 +374,7 @@ class DistributionsPanel(QWidget):
         self._compared = compared = compared if compared is not None and len(compared.drawn) else None
         measured = compared is not None and len(compared.measured) > 0
         self.assessment.setText(translate(compared.assessment()) if compared is not None and measured else "")
+        self.assessment.setVisible(measured)
         comparable = compared is not None and compared.comparable
         self.table.setVisible(comparable)
         if compared is not None and comparable:
