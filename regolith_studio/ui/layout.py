@@ -270,15 +270,24 @@ def name_tabs(made: QTabWidget) -> None:
 
 
 def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30) -> QScrollArea:
-    """Panels below each other, with a scroll bar where they do not fit; at least so many pixels wide."""
+    """Panels below each other, with a scroll bar where they do not fit; at least so many pixels wide.
+
+    Without the scroll bar its room stays empty, so that no panel changes its width when it comes or goes.
+    """
     inside = QWidget()
     column = QVBoxLayout(inside)
     column.setSpacing(8)
-    column.setContentsMargins(4, 8, 12, 4)
     for panel in panels:
         column.addWidget(panel)
     column.addStretch(1)
     area = _Column(least)
+    bar = area.verticalScrollBar()
+
+    def keep_width(_low: int, high: int) -> None:
+        column.setContentsMargins(4, 8, 4 if high else 4 + bar.sizeHint().width(), 4)
+
+    bar.rangeChanged.connect(keep_width)
+    keep_width(0, 0)
     area.setObjectName("controls")
     area.setWidgetResizable(True)
     area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)

@@ -7512,6 +7512,10 @@
         <translation>doppelte Dreiecke</translation>
     </message>
     <message>
+        <source>each class</source>
+        <translation>jede Klasse</translation>
+    </message>
+    <message>
         <source>each counts once</source>
         <translation>jedes zählt einmal</translation>
     </message>

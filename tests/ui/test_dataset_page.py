@@ -130,6 +130,8 @@ def test_that_sizes_are_drawn_as_they_are_typed_and_nonsense_is_explained(chosen
     sizes.numbers.selectAll()
     QTest.keyClicks(sizes.numbers, "80,0.2")
     assert chosen.distribution.classes[0].sizes.median_um == 80.0
+    named = [curve.label for curve in chosen.distribution.curves if curve.label]
+    assert named == ["each class", "all classes, weighted by number"]
     QTest.keyClicks(sizes.numbers, "x")
     assert sizes.problem.isVisibleTo(chosen)
     assert "Numbers must be separated by commas" in sizes.problem.text()

@@ -295,7 +295,7 @@ def test_that_the_lights_say_how_far_a_case_is_from_what_is_recommended(page, da
     page.limits.show_scale(CaseScale(1000, 20.0, 10.0), lambda _: 1.0)
     assert all(each.isHidden() for each in page.limits.buttons)
     page.limits.show_scale(CaseScale(700))
-    assert page.limits.texts[0].text() == "–"
+    assert page.limits.texts[0].text() == "– across the diameter (≥ 20)"
     page.setup.set_dataset(dataset)
     wait(lambda: page._prepared is not None)
     assert page._seconds(1000) > page._seconds(300)

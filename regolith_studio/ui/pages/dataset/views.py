@@ -232,7 +232,11 @@ class SizesPlot(CurvePlot):
         rows = np.array([one.sizes.cdf(at) for one in self._classes])
         curves = []
         if len(self._classes) <= MAX_CLASSES:
-            curves = [PlotCurve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
+            names = [tr("each class"), *[""] * (len(rows) - 1)]
+            curves = [
+                PlotCurve(name, self.theme.border, tuple(at), tuple(100 * row))
+                for name, row in zip(names, rows, strict=True)
+            ]
         mixture = 100 * (weights @ rows) / weights.sum()
         kinds = {one.sizes.weighting for one in self._classes}
         joint = " " + tr("and") + " "

@@ -150,9 +150,8 @@ class LimitsStrip(QWidget):
         values = (None,) * len(ROWS) if scale is None else scale.values()
         for place, (value, (text, form, limit, _)) in enumerate(zip(values, ROWS, strict=True)):
             limits = number_text(limit, ",.0f")
-            self.texts[place].setText(
-                "–" if value is None else tr(text, value=number_text(value, form), limit=limits)
-            )
+            number = "–" if value is None else number_text(value, form)
+            self.texts[place].setText(tr(text, value=number, limit=limits))
             self._offer(place, seconds if value is not None and self._level(place) else None)
         self._colour()
         # back beside them only at another width: else the page would move with each case
