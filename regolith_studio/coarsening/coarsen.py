@@ -252,7 +252,8 @@ def _measured(
         # Not the compiled intersection, which keeps corners apart where more than three planes meet, as those
         # of decimated hulls do.
         unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(solid)
-        overlap = target.jaccard_distance(unit.half_spaces)
+        known = result.jaccard_distance
+        overlap = target.jaccard_distance(unit.half_spaces) if known is None else known
         bounds = attainable_errors(target.descriptors, n_facets, weights)
         if result.makes_compounds:
             bounds |= dict.fromkeys((JACCARD, "volume", "convex_hull_volume"), 0.0)

@@ -22,9 +22,9 @@ class MethodResult:
 
     The `reason` is one sentence, ``None`` where the request is met. `steps` are numbers worth knowing about
     the run, `variants` relative errors (and the Jaccard distance) of other readings of the result.
-    `polyhedron` and `achieved` are those of the solid, where the method has made or measured it already;
-    `free_distance` is the Jaccard distance that a descent on the overlap alone leads to. A method that
-    `makes_compounds` is not bound to miss V or CH.
+    `polyhedron`, `achieved` and `jaccard_distance` are those of the solid, where the method has made or
+    measured it already; `free_distance` is the Jaccard distance that a descent on the overlap alone leads to.
+    A method that `makes_compounds` is not bound to miss V or CH.
     """
 
     solid: HalfSpaces | ConvexCompound
@@ -34,6 +34,7 @@ class MethodResult:
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     polyhedron: ConvexPolyhedron | None = None
     achieved: Descriptors | None = None
+    jaccard_distance: float | None = None
     free_distance: float | None = None
     makes_compounds: bool = False
 

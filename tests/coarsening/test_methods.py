@@ -132,11 +132,12 @@ def test_that_the_steps_begin_with_a_polyhedron_and_end_with_the_result(particle
     assert first.mesh.centroid == pytest.approx(particle.centroid, abs=0.2 * particle.volume ** (1 / 3))
     shown = [step for step in (first, *steps) if step.polyhedron is not None]
     assert len(shown) > 1
-    for step in shown:  # Eq. 9 by the public descriptors, of the very polyhedron
+    for step in shown:  # Eq. 9 by the public descriptors, of the very polyhedron; by fewer rays but the last
         solid = step.polyhedron.moved(rotation=target.axes, scale=1.0 / target.scale)
         errors = relative_errors(target.descriptors, describe(solid, LOSS_KEYS))
         overlap = target.jaccard_distance(solid.half_spaces)
-        assert step.loss == pytest.approx(loss(LossWeights.from_preset("all"), errors, overlap), abs=1e-6)
+        of_rays = 1e-6 if step is shown[-1] else 1e-3
+        assert step.loss == pytest.approx(loss(LossWeights.from_preset("all"), errors, overlap), abs=of_rays)
 
 
 def test_that_a_weight_of_zero_frees_a_descriptor(particle: Mesh) -> None:

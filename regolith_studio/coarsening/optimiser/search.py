@@ -77,7 +77,6 @@ SPREAD = 1.03
 BOX_EVERY = 3
 """Of starts beyond those of the effort every third has the sides of the box, for particles that nearly fill
 it."""
-SAME_LOSS = 1e-6
 WORD_LENGTH = 2.0**-40
 """Wanted values are rounded to this share, far above the rounding of how they were measured."""
 
@@ -98,13 +97,15 @@ EFFORTS = {"fast": SearchEffort(2, 1), "best": SearchEffort(10, 3, raced=5)}
 class Candidate:
     """Where a descent ended, at unit volume: the loss as it sees it, and the largest residual to be kept.
 
-    The relative errors of the terms (Eq. 8) are for the box that it follows, the first of `axes`, (b, 3, 3).
+    The relative errors of the terms (Eq. 8) are for the box that it follows, the first of `axes`, (b, 3, 3);
+    the Jaccard distance is by the rays of the descent.
     """
 
     half_spaces: HalfSpaces
     merit: float
     worst: float
     errors: Mapping[str, float]
+    jaccard_distance: float
     n_facets: int
     axes: FloatArray
 
@@ -208,6 +209,17 @@ class Search:
         if own is not None:
             yield self._step(0, own.half_spaces)
             return self._result(own, own_reason(own.n_facets, self._n_facets), 0)
+        tried = yield from self._candidates()
+        solid, achieved = self._confirmed()
+        errors = relative_errors(self._target.descriptors, achieved)
+        overlap = self._target.jaccard_distance(solid.half_spaces)
+        yield self._better(tried, solid.half_spaces, loss(self._weights, errors, overlap))
+        descriptors, free = self._target.descriptors, self._free_distance
+        reason = reason_for(descriptors, achieved, self._keep, self._n_facets, solid.n_facets, free)
+        return self._result(solid, reason, tried, achieved, overlap)
+
+    def _candidates(self) -> Generator[MethodStep, None, int]:
+        """A step for each better polyhedron, and how many starts were tried."""
         yield from self._of_less_effort()
         few = yield from self._of_fewer()
         small = [*few]
@@ -241,13 +253,7 @@ class Search:
             even = self._further(whole, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
             yield from self._record(tried, even)
         yield from self._made_whole(tried, few)
-        solid, achieved = self._confirmed()
-        errors = relative_errors(self._target.descriptors, achieved)
-        if not self._history or abs(self._loss_of(solid.half_spaces, errors) - self._history[-1]) > SAME_LOSS:
-            yield self._better(tried, solid.half_spaces, errors)
-        descriptors, free = self._target.descriptors, self._free_distance
-        reason = reason_for(descriptors, achieved, self._keep, self._n_facets, solid.n_facets, free)
-        return self._result(solid, reason, tried, achieved)
+        return tried
 
     def _of_fewer(self) -> Generator[MethodStep, None, list[Candidate]]:
         """What the same search finds for the next smaller of :data:`STAGES`, with its steps."""
@@ -269,7 +275,7 @@ class Search:
         """Candidates of another search with the same seed, the best first, with its steps."""
         target, before = self._target, self._before
         search = Search(target, self._weights, self._keep, n_facets, effort, self._retries, self._seed)
-        for step in search.steps():
+        for step in search._candidates():
             self._before = before + step.step
             yield replace(step, step=self._before, steps=before + step.steps + self._most)
         self._history = self._history or search._history
@@ -429,7 +435,7 @@ class Search:
         """Where a descent ends; `axes` are those of the boxes to begin with, where they are known."""
         planes = _planes_of(start)
         radius /= np.sqrt(len(start.offsets))
-        sound, merit, worst, _ = self._descend(
+        sound, merit, worst, distance = self._descend(
             self._prices, planes, steps, radius, held, steady, restoring, axes
         )
         if not sound:
@@ -441,7 +447,7 @@ class Search:
         errors = dict(zip(TERMS, np.abs(residuals), strict=True))
         for key in ("volume", "convex_hull_volume"):  # of a convex polyhedron they are one
             errors[key] = abs(volume / descriptors[key] - 1.0)
-        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, errors, n_real, boxes)
+        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, errors, distance, n_real, boxes)
 
     def _descend(
         self,
@@ -484,31 +490,23 @@ class Search:
         self._found.append(found)
         if best is None or self._rank(found) < best:
             # where not all is kept, another box than that of the descent may be the least
-            yield self._better(tried, found.half_spaces, found.errors if found.met else None)
+            value = loss(self._weights, found.errors, found.jaccard_distance) if found.met else None
+            yield self._better(tried, found.half_spaces, value)
 
-    def _better(self, number: int, half_spaces: HalfSpaces, errors: Mapping[str, float] | None) -> MethodStep:
+    def _better(self, number: int, half_spaces: HalfSpaces, value: float | None) -> MethodStep:
         """A step that the curve of the loss takes up."""
-        step = self._step(number, half_spaces, errors)
+        step = self._step(number, half_spaces, value)
         # less of Eq. 9 that misses more of what is to be kept was no step towards this
         while self._history and self._history[-1] < step.loss:
             self._history.pop()
         self._history.append(step.loss)
         return step
 
-    def _step(
-        self, number: int, half_spaces: HalfSpaces, errors: Mapping[str, float] | None = None
-    ) -> MethodStep:
-        value = self._loss_of(half_spaces, errors)
+    def _step(self, number: int, half_spaces: HalfSpaces, value: float | None = None) -> MethodStep:
+        """With Eq. 9 where it is known; all but the last by the rays of the descent."""
+        if value is None:
+            value = self._judge.value(half_spaces.normals, half_spaces.offsets)
         return MethodStep(self._before + number, self._before + self._most, value, half_spaces)
-
-    def _loss_of(self, half_spaces: HalfSpaces, errors: Mapping[str, float] | None) -> float:
-        """Eq. 9 with as many rays as for the result, so that the curve of the steps ends there."""
-        if errors is None:
-            found = self._judge(half_spaces.normals, half_spaces.offsets)
-            if found is None:
-                return np.inf
-            errors = found.errors
-        return loss(self._weights, errors, self._target.jaccard_distance(half_spaces))
 
     def _rank(self, candidate: Candidate) -> tuple[bool, bool, float]:
         return candidate.rank(self._n_facets)
@@ -539,7 +537,12 @@ class Search:
         return min(checked, key=lambda each: each[0])[1:]
 
     def _result(
-        self, solid: ConvexPolyhedron, reason: str | None, tried: int, achieved: Descriptors | None = None
+        self,
+        solid: ConvexPolyhedron,
+        reason: str | None,
+        tried: int,
+        achieved: Descriptors | None = None,
+        overlap: float | None = None,
     ) -> MethodResult:
         achieved = achieved or describe(solid)
         missed = missed_terms(self._target.descriptors, achieved, self._keep)
@@ -550,6 +553,7 @@ class Search:
             {"starts": float(tried), "exact": float(not missed)},
             polyhedron=solid,
             achieved=achieved,
+            jaccard_distance=overlap,
             free_distance=self._free_distance if self._free_distance < np.inf else None,
         )
 
