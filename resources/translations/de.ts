@@ -6276,6 +6276,10 @@
         <translation>Das Partikel hat Tunnel (Geschlecht {particle}), die Vereinigung der konvexen Teile hat das Geschlecht {union}: keine Bedingung erhält Tunnel; sie können geschlossen oder verlegt werden.</translation>
     </message>
     <message>
+        <source>The particles are being measured: their distributions appear here.</source>
+        <translation>Die Partikel werden vermessen: Ihre Verteilungen erscheinen hier.</translation>
+    </message>
+    <message>
         <source>The particles are scattered: only {share} % of them are in the heap.</source>
         <translation>Die Partikel sind verstreut: Nur {share} % von ihnen liegen in der Schüttung.</translation>
     </message>

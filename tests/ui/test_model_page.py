@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtWidgets import QFileDialog, QLabel
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
@@ -30,6 +30,7 @@ from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.controls import DistributionsPanel, distance_text
 from regolith_studio.ui.result_card import ResultState
+from regolith_studio.ui.theme import LIGHT
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.bars import SpectrumEditor
 from tests.plugin import lunar_kinds
@@ -430,14 +431,14 @@ def test_that_a_project_keeps_the_file_of_a_model_and_draws_from_no_other_where_
 
 
 class HoldingRunner(InlineRunner):
-    """Keeps fits until they are let go."""
+    """Keeps jobs of some queues until they are let go."""
 
-    def __init__(self):
+    def __init__(self, *queues):
         super().__init__()
-        self.held = []
+        self.queues, self.held = queues, []
 
     def submit(self, job, listener, queue=""):
-        if "fit" not in queue:
+        if not any(each in queue for each in self.queues):
             return super().submit(job, listener, queue)
         self.held.append(lambda: InlineRunner.submit(self, job, listener, queue))
         return SimpleNamespace(cancel=lambda: None)
@@ -445,7 +446,7 @@ class HoldingRunner(InlineRunner):
 
 def test_that_the_card_of_the_draws_says_that_a_model_is_being_fitted_and_why_it_was_not(page_of, speaking):
     speaking("de")
-    runner = HoldingRunner()
+    runner = HoldingRunner("fit")
     page = page_of(PAGE, 1100, 760, Session(runner, Choices(level=2)))
     take(page, rough_sample())
     page.drawing.number.setValue(4)
@@ -486,3 +487,20 @@ def test_that_add_or_replace_is_asked_before_particles_are_made(page, monkeypatc
     assert order[1:3] == ["asked", make_particles]
     assert order.count("asked") == 2
     assert len(page.session.particles) == 3
+
+
+def test_that_the_distributions_say_that_the_draws_are_being_measured(page_of):
+    runner = HoldingRunner("compare")
+    page = page_of(PAGE, 1100, 760, Session(runner, Choices(level=2)))
+    take(page, rough_sample())
+    page.drawing.number.setValue(20)
+    texts = lambda: [each.text() for each in page.distributions.plot.findChildren(QLabel)]  # noqa: E731
+    assert any(text.startswith("Draw particles") for text in texts())
+    page.draw()
+    assert any(text.startswith("The particles are being measured") for text in texts())
+    page.distributions.set_theme(LIGHT)
+    assert not any(text.startswith("Draw particles") for text in texts())
+    runner.held.pop()()
+    assert page.distributions.small["sphericity"].curves
+    page.fit_model()
+    assert any(text.startswith("Draw particles") for text in texts())

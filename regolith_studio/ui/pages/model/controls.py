@@ -369,8 +369,15 @@ class DistributionsPanel(QWidget):
             box.currentIndexChanged.connect(lambda _: self._show())
         self.show_compared(None)
 
+    def show_waiting(self) -> None:
+        """Say that the particles have been drawn and are being compared."""
+        self._placeholder = tr("The particles are being measured: their distributions appear here.")
+        self._compared = None
+        self._show()
+
     def show_compared(self, compared: DistributionComparison | None) -> None:
         """Draw other distributions, or none."""
+        self._placeholder = tr(WAITING)
         self._compared = compared = compared if compared is not None and len(compared.drawn) else None
         measured = compared is not None and len(compared.measured) > 0
         self.assessment.setText(translate(compared.assessment()) if compared is not None and measured else "")
@@ -391,6 +398,7 @@ class DistributionsPanel(QWidget):
         self.words.setVisible(not together)
         if self._compared is None:
             self.plot.set_curves([])
+            self.plot.set_empty(True, self._placeholder)
             self.words.setText("")
         elif together:
             for key, plot in self.small.items():

@@ -18,7 +18,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.harmonics.synthesis import level_for
-from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.model_jobs import (
     GenerationRequest,
     GenerationResult,
@@ -506,10 +506,22 @@ class ModelPage(PageWidget):
         self._drawn = drawn
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws, drawn.request.size_range))
-        show = self.distributions.show_compared
-        self._context.start(tr("Comparing distributions"), job, show, queue="compare", repeats=True)
+        self.distributions.show_waiting()
+        self._context.start(
+            tr("Comparing distributions"),
+            job,
+            self.distributions.show_compared,
+            failed=self._fail_to_compare,
+            stopped=lambda: self.distributions.show_compared(None),
+            queue="compare",
+            repeats=True,
+        )
         self._show_state()
         return drawn_record(drawn, self._fitted)
+
+    def _fail_to_compare(self, failure: Failed) -> None:
+        self.distributions.show_compared(None)
+        self._context.toast.problem(failure.sentence, failure.details)
 
     def _request_live(self, again: bool = False) -> None:
         """Draw the particle of the present model and seed."""
