@@ -17,7 +17,6 @@ from regolith_studio.readers.sandbox.parent import (
     MAX_FILE_BYTES,
     SECONDS_PER_BYTE,
     WORK_SECONDS,
-    Sandbox,
     checked_size,
     shared_sandbox,
 )
@@ -58,7 +57,7 @@ class ArchiveMember:
         stems = [part[: -len(SUFFIX)] if part.lower().endswith(SUFFIX) else part for part in folders]
         return printable("/".join(stems))
 
-    def request(self, sandbox: Sandbox) -> SandboxMessage:
+    def request(self) -> SandboxMessage:
         """Its mesh, parsed by the sandbox.
 
         Raises FileError if it is refused, or its reader crashes or exceeds its limits.
@@ -70,7 +69,7 @@ class ArchiveMember:
         more = size * SECONDS_PER_BYTE + _passing(self.chain[:-1])
         options = {"archive": str(self.archive.absolute()), "chain": self.chain}
         seconds, work = BASE_SECONDS + more, WORK_SECONDS + more
-        return sandbox.request_within("mesh", self.path, seconds, work, **options)
+        return shared_sandbox().request_within("mesh", self.path, seconds, work, **options)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.io import from_complex_rows, from_shtools_rows
 from regolith_studio.readers.error_messages import lower_first, message_about, plural
-from regolith_studio.readers.sandbox.parent import Sandbox, sha256_of, shared_sandbox
+from regolith_studio.readers.sandbox.parent import sha256_of, shared_sandbox
 from regolith_studio.readers.settings import unit_factor
 
 __all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
@@ -60,7 +60,6 @@ def read_coefficients(
     unit: str = "um",
     *,
     convention: TableConvention = "auto",
-    sandbox: Sandbox | None = None,
 ) -> CoefficientFile:
     """The radius function of one particle, from rows ``l m Re Im`` or ``l, m, C, S``.
 
@@ -75,7 +74,7 @@ def read_coefficients(
     """
     factor = unit_factor(unit)
     path = Path(path)
-    answer = (sandbox or shared_sandbox()).request("numbers", path, headers=_HEADER_LINES)
+    answer = shared_sandbox().request("numbers", path, headers=_HEADER_LINES)
     rows = answer.arrays[0]
     try:
         if rows.shape[1] < 4:
@@ -146,7 +145,6 @@ def read_table_particle(
     path: Path,
     unit: str,
     group: str = "",
-    sandbox: Sandbox | None = None,
     tables: TableReading = DEFAULT_TABLE_READING,
 ) -> Particle:
     """The particle that a table of coefficients describes, about its star point.
@@ -159,7 +157,7 @@ def read_table_particle(
     from regolith_studio.harmonics.synthesis import reconstruct
 
     l_max = tables.l_max
-    table = read_coefficients(path, unit, convention=tables.convention, sandbox=sandbox)
+    table = read_coefficients(path, unit, convention=tables.convention)
     coefficients, notes = table.coefficients, table.notes
     if l_max is not None and l_max < coefficients.l_max:
         notes += (

@@ -42,7 +42,7 @@ from regolith_studio.readers.error_messages import (
     printable,
 )
 from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
-from regolith_studio.readers.sandbox.parent import Sandbox, sha256_of, shared_sandbox
+from regolith_studio.readers.sandbox.parent import sha256_of, shared_sandbox
 from regolith_studio.readers.settings import AS_USUAL, ReadingSettings, unit_factor
 from regolith_studio.readers.zip_members import SUFFIX
 from regolith_studio.resources import resource
@@ -110,7 +110,6 @@ def read_mesh(
     repair: bool = True,
     l_max: int | None = None,
     convention: TableConvention = "auto",
-    sandbox: Sandbox | None = None,
 ) -> Particle:
     """The particle in one file.
 
@@ -128,8 +127,6 @@ def read_mesh(
         Degree above which coefficients of a table are left out; by default none are.
     convention
         Of a table of coefficients, as `read_coefficients` takes it.
-    sandbox
-        The child process that parses the file; by default the one of this process.
 
     Raises
     ------
@@ -141,7 +138,7 @@ def read_mesh(
     file = MeshFile(Path(path), tables=TableReading(l_max, convention))
     if archive_of(file.path) is not None:
         file = mesh_files([path])[0]
-    return read_file(file, ReadingSettings(unit, repair), sandbox)
+    return read_file(file, ReadingSettings(unit, repair))
 
 
 def read_particles(
@@ -217,48 +214,45 @@ def unique_names(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tu
     )
 
 
-def read_file(
-    file: MeshFile, reading: ReadingSettings = AS_USUAL, sandbox: Sandbox | None = None
-) -> Particle:
+def read_file(file: MeshFile, reading: ReadingSettings = AS_USUAL) -> Particle:
     """As `read_mesh`, for one of `mesh_files`: the particle gets its group and its weight."""
-    particle = _read_file(file, reading, sandbox)
+    particle = _read_file(file, reading)
     if particle.source is not None:
         check_listed(file.path.name, particle.source.sha256, file.listed)
     return particle
 
 
-def _read_file(file: MeshFile, reading: ReadingSettings, sandbox: Sandbox | None) -> Particle:
+def _read_file(file: MeshFile, reading: ReadingSettings) -> Particle:
     suffix = file.path.suffix.lower()
     if suffix in TABLE_SUFFIXES:
-        return _read_table(file, reading.unit, sandbox)
+        return _read_table(file, reading.unit)
     if suffix in TEXT_SUFFIXES:
-        return _mesh_or_table(file, reading, sandbox)
-    return _read_mesh(file, reading, sandbox)
+        return _mesh_or_table(file, reading)
+    return _read_mesh(file, reading)
 
 
-def _read_table(file: MeshFile, unit: str, sandbox: Sandbox | None) -> Particle:
-    particle = read_table_particle(file.path, unit, file.group, sandbox, file.tables)
+def _read_table(file: MeshFile, unit: str) -> Particle:
+    particle = read_table_particle(file.path, unit, file.group, file.tables)
     return replace(particle, weight=file.weight)
 
 
-def _mesh_or_table(file: MeshFile, reading: ReadingSettings, sandbox: Sandbox | None) -> Particle:
+def _mesh_or_table(file: MeshFile, reading: ReadingSettings) -> Particle:
     """The particle in a text file whose content decides between table and mesh."""
     try:
-        return _read_table(file, reading.unit, sandbox)
+        return _read_table(file, reading.unit)
     except FileError as no_table:
         try:
-            return _read_mesh(file, reading, sandbox)
+            return _read_mesh(file, reading)
         except FileError:
             reason = str(no_table).removeprefix(f"{display_name(file.path)} ")
             sentence = f"is not a mesh, and as a table of coefficients it {reason}"
             raise FileError(message_about(file.path, sentence)) from None
 
 
-def _read_mesh(file: MeshFile, reading: ReadingSettings, sandbox: Sandbox | None) -> Particle:
+def _read_mesh(file: MeshFile, reading: ReadingSettings) -> Particle:
     unit, path = reading.unit, file.path
     factor = unit_factor(unit)
-    sandbox = sandbox or shared_sandbox()
-    answer = sandbox.request("mesh", path) if file.member is None else file.member.request(sandbox)
+    answer = shared_sandbox().request("mesh", path) if file.member is None else file.member.request()
     own_unit: str | None = answer.header["unit"]
     overruled = own_unit is not None and unit.startswith("voxel")
     if own_unit is not None and not overruled:

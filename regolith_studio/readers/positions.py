@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.readers.position_formats import NAME_THEM
-from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
+from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.readers.settings import UNITS, unit_factor
 
 __all__ = ["ParticlePositions", "asks_for_columns", "read_positions"]
@@ -54,9 +54,7 @@ class ParticlePositions:
         return len(self.points)
 
 
-def read_positions(
-    path: str | Path, unit: str = "m", *, columns: str = "", sandbox: Sandbox | None = None
-) -> ParticlePositions:
+def read_positions(path: str | Path, unit: str = "m", *, columns: str = "") -> ParticlePositions:
     """The particles of a position file; of several time steps the last.
 
     - ``path``: a table (.csv, .txt, .dat), XYZ, or a LAMMPS dump.
@@ -64,7 +62,6 @@ def read_positions(
       of a LAMMPS dump).
     - ``columns``: names of all columns of a table or XYZ file, in their order: x, y, z, perhaps diameter or
       radius, and any other name for the rest (``type x y z vx vy vz``). By default those of the file.
-    - ``sandbox``: the child process that parses the file; by default the one of this process.
 
     Raises FileError with one sentence if the file cannot be read. Raises InputError if there is no such
     unit.
@@ -75,7 +72,7 @@ def read_positions(
         )
     path = Path(path)
     names = re.split(r"[\s,;]+", columns.strip()) if columns.strip() else []
-    answer = (sandbox or shared_sandbox()).request("positions", path, columns=names)
+    answer = shared_sandbox().request("positions", path, columns=names)
     header = answer.header
     points = answer.arrays[0] * (unit_factor(header["unit"] or unit) * _METRES)
     diameters = None

@@ -13,7 +13,6 @@ import pytest
 
 from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 HERE = Path(__file__).parent
@@ -34,9 +33,9 @@ def refusal_of_mesh(path: Path) -> str:
     return str(caught.value).removeprefix(f"{path.name} ")
 
 
-def read_voxels(path: Path, sandbox: Sandbox | None = None) -> None:
-    header = describe_volume(path, sandbox=sandbox)
-    open_slabs(path, voxel_size=1.0, kind="grey", sandbox=sandbox).read(0, header.shape[2])
+def read_voxels(path: Path) -> None:
+    header = describe_volume(path)
+    open_slabs(path, voxel_size=1.0, kind="grey").read(0, header.shape[2])
 
 
 def test_that_every_file_that_was_found_is_asked_for() -> None:

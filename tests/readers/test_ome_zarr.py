@@ -14,7 +14,6 @@ from zarr.codecs import BloscCodec, GzipCodec, ZstdCodec
 
 from regolith_studio.errors import FileError
 from regolith_studio.jobs.extraction_jobs import volume_sha256
-from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volume_formats.ome_zarr import FORMAT
 from regolith_studio.readers.volumes import read as slabs
 from regolith_studio.readers.volumes.files import volume_files
@@ -284,13 +283,12 @@ def test_that_each_broken_image_is_refused_with_the_sentence_of_its_kind(tmp_pat
 def test_that_mutations_give_voxels_or_a_sentence(version: str, file: str, tmp_path: Path) -> None:
     """Through the sandbox: codecs are compiled, and some read beyond the end of a broken chunk."""
     path = ome_zarr(tmp_path / "scan.zarr", version)
-    data, sandbox = (path / file).read_bytes(), Sandbox()
-    assert sandboxed_answer_of(path, sandbox) == ""
+    data = (path / file).read_bytes()
+    assert sandboxed_answer_of(path) == ""
     rng = np.random.default_rng(31)
     for _ in range(60):
         (path / file).write_bytes(mutated(data, rng))
-        check_sentence(sandboxed_answer_of(path, sandbox))
-    sandbox.close()
+        check_sentence(sandboxed_answer_of(path))
 
 
 def test_that_a_missing_library_is_named_with_its_command(

@@ -20,6 +20,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.readers import coefficient_tables
 from regolith_studio.readers.coefficient_tables import read_coefficients
 from regolith_studio.readers.sandbox.tasks import (
     open_volume_file,
@@ -47,10 +48,6 @@ class InProcess:
     def request(self, task: str, path: Path, **options: Any) -> Any:
         assert task == "numbers"
         return read_number_rows({"path": str(path), **options})
-
-
-def table(path: Path) -> Any:
-    return read_coefficients(path, sandbox=InProcess())  # type: ignore[arg-type]
 
 
 def source(path: Path) -> Any:
@@ -86,8 +83,8 @@ def positions(path: Path) -> Any:
 
 CASES: dict[str, Reader] = {
     **{f"positions/{name}": positions for name in SEEDS},
-    "complex/grain.anm": table,
-    "shtools/grain.shc": table,
+    "complex/grain.anm": read_coefficients,
+    "shtools/grain.shc": read_coefficients,
     "fit/fit.json": source,
     "model/model.json": source,
     "card/card.json": source,
@@ -144,6 +141,11 @@ def write_all(place: Path) -> None:
         "ObjectType = Image\nNDims = 3\nDimSize = 6 5 4\nElementSpacing = 1 1 2\n"
         "ElementType = MET_UCHAR\nElementDataFile = voxels.raw\n"
     )
+
+
+@pytest.fixture(autouse=True)
+def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(coefficient_tables, "shared_sandbox", InProcess)
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,6 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.sandbox.tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 from tests.readers.mutations import check_sentence, folder_in_memory, mutated
@@ -91,11 +90,11 @@ def answer_of(path: Path) -> str:
     return ""
 
 
-def sandboxed_answer_of(path: Path, sandbox: Sandbox) -> str:
+def sandboxed_answer_of(path: Path) -> str:
     """The same through the child."""
     try:
-        header = describe_volume(path, sandbox=sandbox)
-        open_slabs(path, voxel_size=1.0, kind="grey", sandbox=sandbox).read(0, min(header.shape[2], 2))
+        header = describe_volume(path)
+        open_slabs(path, voxel_size=1.0, kind="grey").read(0, min(header.shape[2], 2))
     except FileError as error:
         sentence = str(error)
     else:
@@ -119,18 +118,15 @@ def run_sandboxed(name: str, count: int, seed: int, path: Path) -> int:
     rng = np.random.default_rng(seed)
     data = LIBRARIES[name]()
     path.write_bytes(data)
-    sandbox = Sandbox()
-    sandbox.start()
-    assert sandboxed_answer_of(path, sandbox) == ""
+    assert sandboxed_answer_of(path) == ""
     ended = 0
     for _ in range(count):
         path.write_bytes(mutated(data, rng))
-        sentence = sandboxed_answer_of(path, sandbox)
+        sentence = sandboxed_answer_of(path)
         check_sentence(sentence)
         ended += "crashed the process" in sentence or "given up" in sentence
     path.write_bytes(data)
-    assert sandboxed_answer_of(path, sandbox) == ""
-    sandbox.close()
+    assert sandboxed_answer_of(path) == ""
     return ended
 
 

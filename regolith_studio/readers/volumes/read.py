@@ -23,7 +23,6 @@ from regolith_studio.readers.sandbox.parent import (
     BASE_SECONDS,
     START_SECONDS,
     WORK_SECONDS,
-    Sandbox,
     checked_size,
     volume_sandbox,
 )
@@ -66,8 +65,6 @@ class SlabReader:
     - ``format``: key of the format.
     - ``in_order``, ``layer``: whether the file is best read from its beginning on, and how many slices at a
       time.
-    - ``sandbox``: the sandbox that reads it; by default that for volumes of the current process, so that a
-      reader can be sent to the workers of a pool.
     - ``plain``: the voxels themselves, where they lie in the file as they are and need no child.
     """
 
@@ -77,7 +74,6 @@ class SlabReader:
     format: str
     in_order: bool
     layer: int
-    sandbox: Sandbox | None = None
     plain: PlainVoxels | None = field(default=None, hash=False)
 
     def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
@@ -130,7 +126,7 @@ class SlabReader:
         file_bytes: int = self.request["stamp"][0]
         work += min(layers, file_bytes * MAX_DEFLATE_RATIO) / BYTES_SKIPPED_A_SECOND
         request = {**self.request, "memory": MIN_MEMORY + 6 * size + min(layers, MAX_CACHED_BYTES)}
-        message = (self.sandbox or volume_sandbox()).request_within(
+        message = volume_sandbox().request_within(
             "volume-slices",
             self.path,
             max(BASE_SECONDS, WALL_TIME_FACTOR * work),
@@ -149,7 +145,6 @@ def open_slab_reader(
     path: Path,
     dataset: str | None = None,
     raw: RawLayout | None = None,
-    sandbox: Sandbox | None = None,
     axes: str | None = None,
     allow_gaps: bool = False,
 ) -> SlabReader:
@@ -158,7 +153,7 @@ def open_slab_reader(
     Raises FileError with one sentence if it is not a volume, is damaged, or holds several and none was
     named.
     """
-    reader, path = sandbox or volume_sandbox(), path.absolute()  # workers may run in other folders
+    reader, path = volume_sandbox(), path.absolute()  # workers may run in other folders
     if not path.is_dir():
         checked_size(path, largest=None)
     names = member_names(path)
@@ -183,7 +178,7 @@ def open_slab_reader(
     header = _header_from(answer)
     plain = answer["plain"] and plain_voxels(answer["plain"], header.shape, header.dtype)
     return SlabReader(
-        path, request, header, str(answer["format"]), bool(answer["in_order"]), int(answer["layer"]), sandbox,
+        path, request, header, str(answer["format"]), bool(answer["in_order"]), int(answer["layer"]),
         plain or None,
     )  # fmt: skip
 
@@ -318,7 +313,6 @@ def describe_volume(
     axes: str | None = None,
     allow_gaps: bool = False,
     raw: RawLayout | None = None,
-    sandbox: Sandbox | None = None,
 ) -> VolumeHeader:
     """Read the header of a volume; at most a few slices are decoded.
 
@@ -328,11 +322,10 @@ def describe_volume(
       (default ``zyx``, slices first) or states them wrongly.
     - ``allow_gaps``: whether slices that are absent from a folder become empty ones, instead of a refusal.
     - ``raw``: layout of a raw file.
-    - ``sandbox``: the child process that parses the file; by default the one of this process for volumes.
 
     Raises FileError with one sentence if the file cannot be read.
     """
-    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
+    file = open_slab_reader(Path(path), dataset, raw, axes, allow_gaps)
     header = file.header
     nz, ny, nx = header.shape
     return VolumeHeader(
@@ -361,14 +354,13 @@ def read_volume(
     kind: VolumeKind | None = None,
     bounds: Bounds | None = None,
     raw: RawLayout | None = None,
-    sandbox: Sandbox | None = None,
     on_progress: SliceListener | None = None,
 ) -> Volume:
     """The voxels of a volume, or of a box in it, in memory.
 
     Parameters
     ----------
-    path, dataset, axes, allow_gaps, raw, sandbox
+    path, dataset, axes, allow_gaps, raw
         As for `describe_volume`.
     voxel_size
         One edge, or three along x, y and z, in `unit` (micrometres without one); by default that
@@ -389,7 +381,7 @@ def read_volume(
     InputError
         If the voxel size is unknown, or the box lies outside the volume.
     """
-    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
+    file = open_slab_reader(Path(path), dataset, raw, axes, allow_gaps)
     edges = voxel_size_in_micrometres(file.path, file.header, voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
@@ -411,13 +403,12 @@ def open_slabs(
     unit: str | None = None,
     kind: VolumeKind | None = None,
     raw: RawLayout | None = None,
-    sandbox: Sandbox | None = None,
 ) -> VolumeFile:
     """A volume that is read slab by slab and so may be larger than the memory.
 
     Parameters and errors are those of `read_volume`.
     """
-    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
+    file = open_slab_reader(Path(path), dataset, raw, axes, allow_gaps)
     edges = voxel_size_in_micrometres(file.path, file.header, voxel_size, unit)
     nz, ny, nx = file.header.shape
     kind = kind or file.header.kind or _guess_kind(file)
