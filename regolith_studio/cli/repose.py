@@ -205,7 +205,7 @@ def export(
 def measure(
     file: Annotated[
         Path,
-        typer.Argument(metavar="FILE", help="File of positions: final.npz, CSV, XYZ, LAMMPS dump or VTK."),
+        typer.Argument(metavar="FILE", help="File of positions: final.npz, CSV, XYZ or LAMMPS dump."),
     ],
     output: Figures = None,
     set_: EvaluationSetting = None,

@@ -173,14 +173,13 @@ def survey_representatives(
     particles: Sequence[Particle],
     request: RepresentativesRequest,
     population: MeasuredPopulation | None = None,
-    workers: int | Executor = 1,
 ) -> Steps:
     """Measure a sample, unless that is done, and its quality curve; returns :class:`RepresentativesSurvey`.
 
     Partial results are the points of the curve.
     """
     if population is None:
-        population = yield from measure_population(particles, workers)
+        population = yield from measure_population(particles)
     if len(population.kept) < 2:
         raise InputError("Representatives need at least two particles that can be described.")
     curve = yield from measure_quality(population, request)

@@ -173,7 +173,7 @@ def measure_one(particle: Particle, keys: Sequence[str] = DEFAULT_KEYS) -> Steps
     return (yield from _measuring(particle, "exact", keys))
 
 
-def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
+def measure_particles(particles: Sequence[Particle]) -> Steps:
     """Each particle in order; partial results and the result are tuples of :class:`MeasuredParticle`, so far.
 
     A partial result comes when an eighth more is known, so that the copied tuples grow as the number of
@@ -184,7 +184,7 @@ def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") 
     measured: list[MeasuredParticle] = []
     due = 1
     for particle in particles:
-        measured.append(measure_particle(particle, box_metric))
+        measured.append(measure_particle(particle))
         if len(measured) >= due:
             yield Partial(tuple(measured))
             due = len(measured) + max(1, len(measured) // 8)
