@@ -297,7 +297,7 @@ def _writing(place: Path) -> Iterator[Contest]:
         "100 shapes: aligned, checked, hashed, on the disk",
         lambda: write_dataset(place / "ours", build_dataset(pairs)),
         lambda: plain.write_dataset(place / "plain", bare),
-        "trimesh's export and json: no check, no fsync",
+        "trimesh's export and json: no check",
         whole=True,
     )
 

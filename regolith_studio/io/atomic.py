@@ -14,9 +14,7 @@ import shutil
 import sys
 import time
 import uuid
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -25,9 +23,6 @@ from typing import IO
 from regolith_studio.errors import FileError, RegolithError, check_not_stopped, os_error_reason
 from regolith_studio.io.file_names import path_inside
 from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock, release_all, remove_hidden
-
-CONCURRENT_SYNCS = 16
-"""Files flushed to the disk at the same time."""
 
 JOURNAL = "journal"
 """Folder in an output that keeps what is needed to resume unfinished work; it is no part of the result."""
@@ -170,7 +165,7 @@ def check_listed(name: str, sha256: str, listed: Mapping[str, str]) -> None:
 
 
 def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
-    """Make `target` hold exactly `files` (relative POSIX paths), in one step, flushed to the disk.
+    """Make `target` hold exactly `files` (relative POSIX paths), in one step.
 
     Files may be given as an iterable of pairs, so that they are never in memory together.
 
@@ -179,20 +174,22 @@ def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[s
     """
     with filled_folder(target, files) as stage:
         exchange(stage, target)
-    with contextlib.suppress(OSError):
-        sync_folder(target.parent)
 
 
 @contextmanager
 def filled_folder(
     target: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]
 ) -> Iterator[Path]:
-    """A hidden folder beside `target` with these files, flushed to the disk, for :func:`exchange`.
+    """A hidden folder beside `target` with these files, for :func:`exchange`.
 
     Raises OSError or FileError as :func:`replace_folder`.
     """
     with hidden_folder(target) as stage:
-        _fill(stage, files)
+        for name, content in files.items() if isinstance(files, Mapping) else files:
+            path = path_inside(stage, name)
+            path.parent.mkdir(exist_ok=True)
+            with path.open("xb") as stream:
+                stream.writelines((content,) if isinstance(content, bytes) else content)
         yield stage
 
 
@@ -216,17 +213,6 @@ def remove_quietly(folder: Path) -> None:
         if not folder.is_dir():
             return
         time.sleep(_REMOVAL_SECONDS)
-
-
-def sync_folder(folder: Path) -> None:
-    """Flush the list of names of a folder to the disk, where the system can."""
-    if os.name == "nt":
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def swap_folders(first: Path, second: Path) -> bool:
@@ -314,70 +300,6 @@ def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
 
 def _read_if_there(path: Path) -> bytes:
     return path.read_bytes() if path.is_file() else b""
-
-
-def _fill(folder: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
-    """Write the files into a new folder and flush them to the disk."""
-    folders = {folder}
-    with _FileSyncer() as syncer:
-        for name, content in files.items() if isinstance(files, Mapping) else files:
-            path = path_inside(folder, name)
-            if path.parent not in folders:
-                os.mkdir(path.parent)  # noqa: PTH102
-                folders.add(path.parent)
-            syncer.close(_write_file(path, content))
-    # After their files, the inner folders first: a name on the disk then has its content there, too.
-    for inner in sorted(folders, key=lambda one: len(one.parts), reverse=True):
-        sync_folder(inner)
-
-
-def _write_file(path: Path, content: Content) -> int:
-    """Handle of a new file with its content, not yet flushed to the disk."""
-    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
-    try:
-        for piece in (content,) if isinstance(content, bytes) else content:
-            rest = memoryview(piece)
-            while rest:
-                rest = rest[os.write(handle, rest) :]
-    except BaseException:
-        os.close(handle)
-        raise
-    return handle
-
-
-class _FileSyncer:
-    """Flushes several files to the disk at the same time.
-
-    fsync takes milliseconds, and hardly longer for many files at once than for one: one after the other,
-    10,000 files take more than a minute.
-    """
-
-    def __enter__(self) -> "_FileSyncer":
-        self._threads = ThreadPoolExecutor(CONCURRENT_SYNCS, thread_name_prefix="sync")
-        self._pending: deque[Future[None]] = deque()
-        return self
-
-    def close(self, handle: int) -> None:
-        """Schedule the file of a handle to be flushed and closed.
-
-        Raises OSError if that has failed for an earlier file.
-        """
-        self._pending.append(self._threads.submit(_sync_and_close, handle))
-        while len(self._pending) > 4 * CONCURRENT_SYNCS:
-            self._pending.popleft().result()
-
-    def __exit__(self, kind: object, error: object, trace: object) -> None:
-        self._threads.shutdown()
-        for each in self._pending:
-            if kind is None:
-                each.result()
-
-
-def _sync_and_close(handle: int) -> None:
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def exchange(fresh: Path, target: Path) -> None:

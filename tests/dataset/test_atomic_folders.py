@@ -15,8 +15,10 @@ from regolith_studio.io import atomic
 from regolith_studio.io.atomic import recover_folder
 from regolith_studio.io.output_lock import leftovers
 
-CALLS = ("mkdir", "open", "write", "fsync", "close", "rename")
-"""Every function of ``os`` that writing a folder goes through; ``swap_folders`` is counted beside them."""
+CALLS = ((os, "mkdir"), (os, "open"), (os, "rename"), (Path, "open"), (atomic, "swap_folders"))
+"""Every call that writing a folder goes through."""
+
+PATH_OPEN = Path.open
 
 
 class Failing:
@@ -24,16 +26,15 @@ class Failing:
 
     def __init__(self, monkeypatch, at: int | None) -> None:
         self.count, self.at = 0, at
-        for name in CALLS:
-            monkeypatch.setattr(atomic.os, name, self._wrapped(getattr(os, name), name))
-        monkeypatch.setattr(atomic, "swap_folders", self._wrapped(atomic.swap_folders, "swap"))
+        for owner, name in CALLS:
+            monkeypatch.setattr(owner, name, self._wrapped(getattr(owner, name)))
 
-    def _wrapped(self, call, name):
+    def _wrapped(self, call):
         def counted(*arguments, **options):
+            if call is PATH_OPEN and "xb" not in arguments:  # to read what is there
+                return call(*arguments, **options)
             self.count += 1
             if self.count == self.at:
-                if name == "close":
-                    call(*arguments, **options)
                 raise OSError(28, "No space left on device")
             return call(*arguments, **options)
 
@@ -57,7 +58,7 @@ def test_that_a_failing_call_leaves_the_old_dataset_or_the_new_one(
     folder, old, new = tmp_path / "set", make_dataset(1), make_dataset(1, first=10)
     write_dataset(folder, old)
     steps = calls_of(monkeypatch, lambda: write_dataset(folder, new))
-    assert steps > 15
+    assert steps > 10
     refused = 0
     for step in range(1, steps + 1):
         write_dataset(folder, old)
@@ -76,7 +77,7 @@ def test_that_a_failing_call_leaves_the_old_dataset_or_the_new_one(
         assert validate_dataset(folder) == []
         for rest in leftovers(folder):
             atomic.remove_quietly(rest)
-    assert refused >= 15
+    assert refused >= 6
 
 
 def test_that_a_failing_call_leaves_no_dataset_where_there_was_none(
@@ -95,12 +96,6 @@ def test_that_a_failing_call_leaves_no_dataset_where_there_was_none(
             else:
                 assert validate_dataset(folder) == []
         assert leftovers(folder) == []
-
-
-def test_that_short_writes_are_continued(tmp_path: Path, monkeypatch, make_dataset) -> None:
-    write = os.write
-    monkeypatch.setattr(atomic.os, "write", lambda handle, data: write(handle, bytes(data[:97])))
-    assert validate_dataset(write_dataset(tmp_path / "set", make_dataset(2))) == []
 
 
 DRIVER = """
@@ -136,10 +131,9 @@ def deadly(call, at, after):
     return counted
 
 def child(run):
-    for name in ("mkdir", "open", "write", "fsync", "close", "rename"):
-        setattr(os, name, deadly(getattr(os, name), run + 1, mode == "after"))
-    atomic.swap_folders = deadly(atomic.swap_folders, run + 1, mode == "after")
-    atomic.shutil.rmtree = deadly(atomic.shutil.rmtree, run + 1, mode == "after")
+    calls = (os, "mkdir"), (os, "open"), (os, "rename"), (Path, "open"), (Path, "mkdir")
+    for owner, name in (*calls, (atomic, "swap_folders"), (atomic.shutil, "rmtree")):
+        setattr(owner, name, deadly(getattr(owner, name), run + 1, mode == "after"))
     replace_folder(folder, files[1])
     os._exit(0)
 
@@ -209,7 +203,7 @@ def test_that_a_kill_at_every_step_leaves_the_old_dataset_or_the_new_one(
 ) -> None:
     report = drive(tmp_path, make_dataset, 400, mode, swap)
     assert report["runs"] == report["killed"] + 1 < 400
-    assert report["found"][0] > 15
+    assert report["found"][0] > 10
     assert report["found"][1] >= 2
 
 
