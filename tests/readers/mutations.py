@@ -1,12 +1,17 @@
-"""Bytes changed at random, where they are written, and what the answer to them must look like."""
+"""Bytes changed at random, where they are written, and what the answer to bad files must look like."""
 
 import os
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pytest
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.volumes.read import read_volume
 
 WORDS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"nan", b"NaN", b"9" * 12, b"\n", b" ", b"#", b":"]
 WORDS += [b"=", b",", b";", b"<", b'"', b"{", b"[", b"\\\n", b"null", b"true", b"raw", b"gzip", b"LOCAL"]
@@ -39,6 +44,28 @@ def check_sentence(sentence: str, longest: int = 250) -> None:
     assert not sentence or sentence.endswith("."), sentence
     assert "\n" not in sentence, sentence
     assert len(sentence) < longest, sentence
+
+
+def check_refused(path: Path, pattern: str, **options: object) -> None:
+    """Fail unless a volume is refused in one plain sentence about it that matches a pattern."""
+    try:
+        read_volume(path, **{"voxel_size": 1.0, "kind": "grey", **options})  # type: ignore[arg-type]
+    except FileError as error:
+        sentence = str(error)
+    else:
+        pytest.fail(f"{path.name} was read; expected: {pattern}")
+    check_sentence(sentence)
+    assert sentence.startswith(f"{path.name} "), sentence
+    assert re.search(pattern, sentence), (path.name, pattern, sentence)
+
+
+def check_answers(path: Path, answer: Callable[[], str], seed: int = 31, count: int = 400) -> None:
+    """Fail unless a file is read, and changed at random is answered by values or one sentence."""
+    rng, data = np.random.default_rng(seed), path.read_bytes()
+    assert answer() == ""
+    for _ in range(count):
+        path.write_bytes(mutated(data, rng))
+        check_sentence(answer())
 
 
 @contextmanager

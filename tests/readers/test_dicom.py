@@ -1,7 +1,6 @@
 """DICOM series as pydicom writes them: voxels, edges and order right, 40 and more broken ones refused."""
 
 import io
-import re
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -27,7 +26,7 @@ from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 from regolith_studio.session.file_kinds import FileKind, kind_of
-from tests.readers.mutations import check_sentence, mutated
+from tests.readers.mutations import check_answers, check_refused
 from tests.readers.test_txm import marked
 from tests.readers.test_volume_mutations import answer_of
 
@@ -295,24 +294,14 @@ def test_that_each_broken_series_is_refused_with_the_sentence_of_its_kind(tmp_pa
     for number, (write, pattern) in enumerate(corpus):
         folder = tmp_path / f"{number}"
         write(folder)
-        with pytest.raises(FileError) as caught:
-            read_volume(folder, voxel_size=1.0, kind="grey"), pytest.fail(f"{number}: {pattern}")
-        check_sentence(str(caught.value))
-        assert str(caught.value).startswith(f"{number} "), str(caught.value)
-        assert re.search(pattern, str(caught.value)), (number, pattern, str(caught.value))
+        check_refused(folder, pattern)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("syntax", [ExplicitVRLittleEndian, ImplicitVRLittleEndian])
 def test_that_four_hundred_mutations_give_voxels_or_a_sentence(syntax: UID, tmp_path: Path) -> None:
     folder = series(tmp_path / "scan", syntax=syntax)
-    path = folder / "IM002.dcm"
-    data = path.read_bytes()
-    assert answer_of(folder) == ""
-    rng = np.random.default_rng(31)
-    for _ in range(400):
-        path.write_bytes(mutated(data, rng))
-        check_sentence(answer_of(folder))
+    check_answers(folder / "IM002.dcm", lambda: answer_of(folder))
 
 
 def test_that_a_missing_library_is_named_with_its_command(

@@ -17,7 +17,7 @@ import tifffile
 from regolith_studio.errors import FileError
 from regolith_studio.readers.sandbox.tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
-from tests.readers.mutations import check_sentence, folder_in_memory, mutated
+from tests.readers.mutations import check_answers, check_sentence, folder_in_memory, mutated
 from tests.readers.test_txm import txm
 
 SLICES = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint16)
@@ -104,13 +104,8 @@ def sandboxed_answer_of(path: Path) -> str:
 
 
 def run_own(name: str, count: int, seed: int, path: Path) -> None:
-    rng = np.random.default_rng(seed)
-    data = OWN[name]()
-    path.write_bytes(data)
-    assert answer_of(path) == ""
-    for _ in range(count):
-        path.write_bytes(mutated(data, rng))
-        check_sentence(answer_of(path))
+    path.write_bytes(OWN[name]())
+    check_answers(path, lambda: answer_of(path), seed, count)
 
 
 def run_sandboxed(name: str, count: int, seed: int, path: Path) -> int:
