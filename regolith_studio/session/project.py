@@ -7,13 +7,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
-from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.file_names import name_key, unique_name
-from regolith_studio.io.own_files import parse_strict_json
-from regolith_studio.readers.sandbox.parent import read_bytes
 from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices
@@ -27,12 +24,12 @@ from regolith_studio.session.provenance import (
     VolumeSource,
 )
 from regolith_studio.session.recipe import (
-    LARGEST,
     DatasetRequest,
     FilesEntry,
     NamedParticle,
     Outputs,
     Recipe,
+    read_document,
 )
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
@@ -214,14 +211,7 @@ class Project(BaseModel):
 
 def read_project(path: Path) -> Project:
     """Read a project file."""
-    content = read_bytes(path, LARGEST)
-    try:
-        project = Project.model_validate_json(content)
-        parse_strict_json(content.decode("utf-8"), str(path))
-        return project
-    except ValidationError as error:
-        reason = format_validation_error(error.errors(include_url=False))
-        raise FileError(f"{path} is not a project of this program: {reason}.") from error
+    return read_document(path, Project, "project")
 
 
 FINGERPRINTED = 1 << 20

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import Field as DataclassField
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, model_validator
 
@@ -341,14 +341,22 @@ class Recipe(_ChoiceEntries):
 
 def read_recipe(path: Path) -> Recipe:
     """Read a recipe file."""
+    return read_document(path, Recipe, "recipe")
+
+
+Document = TypeVar("Document", bound=BaseModel)
+
+
+def read_document(path: Path, model: type[Document], kind: str) -> Document:
+    """Read a JSON file that holds a model; `kind` is what the message of a refusal calls it."""
     content = read_bytes(path, LARGEST)
     try:
-        recipe = Recipe.model_validate_json(content)
-        parse_strict_json(content.decode("utf-8"), str(path))
-        return recipe
+        document = model.model_validate_json(content)
     except ValidationError as error:
         reason = format_validation_error(error.errors(include_url=False))
-        raise FileError(f"{path} is not a recipe of this program: {reason}.") from error
+        raise FileError(f"{path} is not a {kind} of this program: {reason}.") from error
+    parse_strict_json(content.decode("utf-8"), str(path))
+    return document
 
 
 def recipe_schema() -> dict[str, Any]:
