@@ -23,7 +23,6 @@ from regolith_studio.studies.figures.population import (
 )
 from regolith_studio.studies.population import (
     KEYS,
-    N_FLOOR_SPLITS,
     PopulationStudy,
     default_settings,
     descriptors_of,
@@ -239,22 +238,6 @@ def test_that_waiting_for_results_changes_nothing_and_lets_the_study_be_stopped(
         waited.models[0].table, run(rough_sample(24), ["log_field"], **options)[1].models[0].table
     )
     assert steps[0].done == 0
-
-
-def test_that_whatever_takes_long_is_shared_out_and_the_floor_told_split_by_split() -> None:
-    asked: list[str] = []
-
-    def noting(function, items):  # type: ignore[no-untyped-def]
-        asked.append(getattr(function, "func", function).__name__)
-        return map(function, items)
-
-    options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 2, "level": 1}
-    steps, _ = run(rough_sample(24), ["log_field"], mapper=noting, **options)
-    assert asked == [
-        *("descriptors_of", "descriptors_of", "frames_of", "fit_and_draw"),
-        *("descriptors_of", "frames_of", "distances_among", "nearest_over_rotations", "descriptors_of"),
-    ]
-    assert sum("noise of sampling" in step.message for step in steps) == N_FLOOR_SPLITS
 
 
 def test_that_distances_do_not_depend_on_how_pairs_are_shared_out() -> None:
