@@ -12,13 +12,14 @@ from regolith_studio.dem.lifting_cylinder import (
     LiftingRun,
     Solver,
     SubstepSettings,
+    Units,
     halved_step,
     resume_lifting,
     simulate_lifting,
     steps_note,
 )
 from regolith_studio.dem.rotating_drum import TURNING
-from regolith_studio.dem.snapshot import EngineState, Snapshot
+from regolith_studio.dem.snapshot import PHASES, EngineState, Snapshot
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
 
@@ -84,8 +85,11 @@ class SteppedEngine(ABC):
 class SubstepSolver(ABC):
     """A solver that takes small steps between two searches for contacts; it repeats itself on any threads."""
 
-    settings: SubstepSettings
-    phase: str
+    def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
+        self.prepared, self.settings = prepared, settings
+        units = Units.of(prepared)
+        self.unit_length, self.unit_time = units.length, units.time
+        self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
 
     @abstractmethod
     def speeds(self) -> FloatArray:

@@ -16,7 +16,6 @@ from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
     SubstepSettings,
-    Units,
     diverged,
     friction_in,
     lift_speed,
@@ -24,7 +23,7 @@ from regolith_studio.dem.lifting_cylinder import (
     wall_ring,
 )
 from regolith_studio.dem.separation import overlap_depths
-from regolith_studio.dem.snapshot import DRUM_PHASES, PHASES, ParticleState
+from regolith_studio.dem.snapshot import DRUM_PHASES, ParticleState
 from regolith_studio.dem.stepped_engine import SubstepSolver
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
@@ -117,10 +116,7 @@ class Box3dSolver(SubstepSolver):
     """Box3D's world: the particles, the cylinder, the plate."""
 
     def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
-        self.prepared, self.settings = prepared, settings
-        units = Units.of(prepared)
-        self.unit_length, self.unit_time = units.length, units.time
-        self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
+        super().__init__(prepared, settings)
         lib.b3SetLengthUnitsPerMeter(LENGTH_UNIT)  # of the process; worlds keep what was set
         self.world = _new_world()
         self._end = weakref.finalize(self, lib.b3DestroyWorld, self.world)

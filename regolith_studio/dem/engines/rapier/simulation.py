@@ -13,7 +13,6 @@ from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
     SubstepSettings,
-    Units,
     diverged,
     friction_in,
     lift_speed,
@@ -21,7 +20,7 @@ from regolith_studio.dem.lifting_cylinder import (
     wall_ring,
 )
 from regolith_studio.dem.separation import overlap_depths
-from regolith_studio.dem.snapshot import PHASES, ParticleState
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.dem.stepped_engine import SubstepSolver
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
@@ -50,10 +49,7 @@ class RapierSolver(SubstepSolver):
     """Rapier's world: the particles, then the cylinder, then the plate."""
 
     def __init__(self, prepared: PreparedCase, settings: SubstepSettings) -> None:
-        self.prepared, self.settings = prepared, settings
-        units = Units.of(prepared)
-        self.unit_length, self.unit_time = units.length, units.time
-        self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
+        super().__init__(prepared, settings)
         self.world = rapier.PhysicsWorld(gravity=(0.0, 0.0, -1.0))
         self.cores = rounded_cores(prepared)
         self.top = _build(self.world, prepared, self.cores)
