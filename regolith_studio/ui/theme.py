@@ -260,7 +260,8 @@ QFrame[role="toast"][kind="note"] {{ border-color: palette(highlight); }}
 QTableView {{ border: 1px solid palette(mid); border-radius: 5px; gridline-color: transparent;
     selection-background-color: palette(midlight); selection-color: palette(text); }}
 QTableView[focused="true"] {{ border-color: palette(highlight); }}
-QListWidget {{ border: 1px solid palette(mid); border-radius: 5px; padding: 3px; }}
+QListWidget {{ background: palette(base); border: 1px solid palette(mid); border-radius: 5px;
+    padding: 3px; }}
 QListWidget[focused="true"] {{ border-color: palette(highlight); }}
 QTableCornerButton::section {{ background: palette(window); border: none;
     border-bottom: 1px solid palette(mid); }}

@@ -22,6 +22,7 @@ from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.pages.dataset.export_panel import groups
+from regolith_studio.ui.pages.dataset.views import GalleryItem, RepresentativesGallery
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
@@ -121,6 +122,21 @@ def test_that_the_curve_falls_and_the_slider_chooses_among_its_points(chosen, wa
     assert sum(shares) == pytest.approx(100, abs=0.5)
     assert shares == sorted(shares, reverse=True)
     assert chosen.representatives.count.slider.maximum() == 8
+
+
+def test_that_captions_of_representatives_are_whole_in_a_larger_font_too(shown) -> None:
+    gallery = RepresentativesGallery()
+    shown(gallery)
+    words = "16,7 %, 20 Facetten\nagglutinate-1"
+    gallery.show_shapes("one", [GalleryItem(icosphere(0), words, "")])
+    for points in (9, 18, 27):
+        font = gallery.font()
+        font.setPointSize(points)
+        gallery.setFont(font)
+        cell, metrics = gallery.list.visualItemRect(gallery.list.item(0)), gallery.list.fontMetrics()
+        assert metrics.size(0, words).width() + 8 <= cell.width()
+        assert gallery.list.iconSize().height() + metrics.size(0, words).height() + 8 <= cell.height()
+    gallery.release()
 
 
 def test_that_sizes_are_drawn_as_they_are_typed_and_nonsense_is_explained(chosen, wait) -> None:

@@ -58,8 +58,8 @@ from regolith_studio.ui.pages.dataset.controls import (
 )
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel, ExportsList, LossesLabel
 from regolith_studio.ui.pages.dataset.views import (
-    CELL,
     SHAPE_FIELDS,
+    SIZE,
     QualityPlot,
     RepresentativesGallery,
     SizesPlot,
@@ -559,7 +559,7 @@ class DatasetPage(PageWidget):
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (scrolled(self.exports), tr("Exported"))]
         self._lower = tabs("dataset_lower", lower)
-        self.gallery.setMinimumHeight(CELL.height() + 3 * self.fontMetrics().height())
+        self.gallery.setMinimumHeight(SIZE + 12 + 5 * self.fontMetrics().height())
         middle = stacked((upper, self.gallery, self._lower), (260, 330, 120), stretch=1)
         middle.setObjectName("dataset_middle")
         results = QWidget()

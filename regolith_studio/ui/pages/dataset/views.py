@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtCore import QEvent, QSize, Qt, QTimer
 from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
@@ -23,8 +23,10 @@ from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
 
-SIZE, CELL = 120, QSize(140, 164)
-"""Size of a thumbnail, and of a cell with its caption, in pixels."""
+SIZE, CELL_WIDTH = 120, 140
+"""Size of a thumbnail, and of a cell at least, in pixels."""
+CAPTION_DIGITS = 24
+"""Digits of a line of a caption beyond which it is elided."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +56,7 @@ class RepresentativesGallery(QWidget):
         self.list.setResizeMode(QListView.ResizeMode.Adjust)
         self.list.setMovement(QListView.Movement.Static)
         self.list.setIconSize(QSize(SIZE, SIZE))
-        self.list.setGridSize(CELL + QSize(4, 4))
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
-        self.list.setFrameShape(self.list.Shape.NoFrame)
         self.empty = QLabel(tr("Press Find representatives to show them here with their weights."))
         self.empty.setProperty("role", "hint")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -77,12 +77,28 @@ class RepresentativesGallery(QWidget):
         for each in self._shown:
             item = QListWidgetItem(each.caption)
             item.setToolTip(each.tip)
-            item.setSizeHint(CELL)
             item.setTextAlignment(Qt.AlignmentFlag.AlignHCenter)
             self.list.addItem(item)
         self.list.setVisible(bool(shown))
         self.empty.setVisible(not shown)
+        self._fit_cells()
         self._redraw()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._fit_cells()
+
+    def _fit_cells(self) -> None:
+        """Give all captions room for their lines, in any language and font size."""
+        metrics = self.fontMetrics()
+        lines = [line for each in self._shown for line in each.caption.split("\n")]
+        limit = metrics.horizontalAdvance("0" * CAPTION_DIGITS)
+        widest = max((min(metrics.horizontalAdvance(line), limit) for line in lines), default=0)
+        cell = QSize(max(CELL_WIDTH, widest + 16), SIZE + 2 * metrics.lineSpacing() + 12)
+        for row in range(self.list.count()):
+            self.list.item(row).setSizeHint(cell)
+        self.list.setGridSize(cell + QSize(4, 4))
 
     def set_theme(self, theme: Theme) -> None:
         self._theme = theme
