@@ -172,6 +172,9 @@ def _show_lines(plotter: Any, data: pv.PolyData, colour: str, layer: str = "") -
             reset_camera=False,
             render=False,
         )
+        # else a facet that is seen nearly from its side hides pieces of its own edges
+        actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-1.0, -8.0)
     actor.prop.color = colour
 
 

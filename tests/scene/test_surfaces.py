@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkCoordinate
 
 from regolith_studio.geometry import ConvexCompound, ConvexPolyhedron, HalfSpaces
 from regolith_studio.scene import surfaces
@@ -101,3 +102,47 @@ def test_that_parts_of_a_compound_have_tones_of_their_own_and_a_polyhedron_after
     assert plotter.actors[surfaces.SURFACE].mapper.scalar_visibility
     surfaces.show_polyhedron(plotter, side)
     assert not plotter.actors[surfaces.SURFACE].mapper.scalar_visibility
+
+
+def test_that_edges_between_facets_are_drawn_whole(plotter):
+    rng = np.random.default_rng(1)
+    normals = rng.normal(size=(20, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(normals, rng.uniform(20.0, 30.0, size=20)))
+    plotter.window_size = [600, 600]
+    surfaces.show_polyhedron(plotter, solid)
+    plotter.actors[surfaces.OUTLINE].prop.color = "red"
+    plotter.set_background("white")
+    plotter.camera.enable_parallel_projection()
+    seen = [False]
+    for _ in range(6):
+        direction = rng.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        aside = np.cross(direction, (0.3, 0.5, 0.8))
+        plotter.camera_position = [direction * 300.0, (0.0, 0.0, 0.0), aside]
+        plotter.camera.parallel_scale = 45.0
+        plotter.camera.clipping_range = (150.0, 450.0)
+        plotter.render()
+        image = plotter.screenshot(return_img=True).astype(int)
+        red = (image[..., 0] - image[..., 1] > 100) & (image[..., 2] < 120)
+        seen += [
+            red[y - 1 : y + 2, x - 1 : x + 2].any() for x, y in _points_on_edges(solid, direction, plotter)
+        ]
+    assert len(seen) > 2000
+    assert np.mean(seen) > 0.985
+
+
+def _points_on_edges(solid, direction, plotter):
+    """Pixels on the edges of facets that face the camera."""
+    point = vtkCoordinate()
+    point.SetCoordinateSystemToWorld()
+    height = plotter.window_size[1]
+    facing = solid.half_spaces.normals @ direction > 0.0
+    faced = [set(facet) for facet, shown in zip(solid.facets, facing, strict=True) if shown]
+    for edge in surfaces.facet_edges(solid).reshape(-1, 3)[:, 1:]:
+        if any(facet.issuperset(edge.tolist()) for facet in faced):
+            first, last = solid.vertices[edge]
+            for share in np.linspace(0.1, 0.9, 17):
+                point.SetValue(*(first + share * (last - first)))
+                x, y = point.GetComputedDisplayValue(plotter.renderer)
+                yield x, height - 1 - y
