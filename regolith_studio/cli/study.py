@@ -212,52 +212,53 @@ def lmax(
     raise typer.Exit(code)
 
 
+@dataclass(frozen=True, kw_only=True)
+class LossOptions:
+    """What studies take whose rows are sets of loss weights."""
+
+    facets: Facets = FACETS
+    loss: Losses = None
+    compound: WithCompound = False
+    how: CoarseningOptions
+    run: RunOptions
+
+    def study(
+        self, kind: str, study: Callable[..., "Steps"], meshes: Sequence[Path], output: Path, **options: Any
+    ) -> None:
+        """Run a study of these rows and end the program with its exit code."""
+        choices = self.how.choices(n_facets=self.facets, seed=self.run.seed)
+        options |= {"request": choices.coarsening_request, "rows": self._rows(choices)}
+        _, code = self.run.study(kind, study, meshes, output, **options)
+        raise typer.Exit(code)
+
+    def _rows(self, choices: "Choices") -> "tuple[LossVariant, ...]":
+        """The rows by name; without names Fig. 8's, and those that the options weight."""
+        from regolith_studio.session.study_requests import CHOSEN, COMPOUND, chosen_rows
+        from regolith_studio.studies.loss_variants import PAPER_LOSSES
+
+        chosen = tuple(self.loss or (*PAPER_LOSSES, *((CHOSEN,) if self.how.weight else ())))
+        added = (COMPOUND,) if self.compound and COMPOUND not in chosen else ()
+        with usage_errors():
+            return chosen_rows((*chosen, *added), choices)
+
+
 @app.command("coarsening")
 @with_dataclass_options
-def coarsening(
-    *,
-    meshes: Meshes,
-    output: Folder,
-    facets: Facets = FACETS,
-    loss: Losses = None,
-    compound: WithCompound = False,
-    how: CoarseningOptions,
-    box: BoxMetric = "exact",
-    run: RunOptions,
-) -> None:
+def coarsening(*, meshes: Meshes, output: Folder, box: BoxMetric = "exact", losses: LossOptions) -> None:
     """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
     from regolith_studio.jobs.study_jobs import study_coarsening
 
     check_box(box)
-    choices = how.choices(n_facets=facets, seed=run.seed)
-    options = {"rows": _rows(loss, choices, bool(how.weight), compound), "box_metric": box}
-    _, code = run.study(
-        "coarsening_study", study_coarsening, meshes, output, request=choices.coarsening_request, **options
-    )
-    raise typer.Exit(code)
+    losses.study("coarsening_study", study_coarsening, meshes, output, box_metric=box)
 
 
 @app.command("solids")
 @with_dataclass_options
-def solids(
-    *,
-    meshes: Meshes,
-    output: Folder,
-    facets: Facets = FACETS,
-    loss: Losses = None,
-    compound: WithCompound = False,
-    how: CoarseningOptions,
-    run: RunOptions,
-) -> None:
+def solids(*, meshes: Meshes, output: Folder, losses: LossOptions) -> None:
     """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
     from regolith_studio.jobs.study_jobs import study_gallery
 
-    choices = how.choices(n_facets=facets, seed=run.seed)
-    rows = _rows(loss, choices, bool(how.weight), compound)
-    _, code = run.study(
-        "solids_study", study_gallery, meshes, output, request=choices.coarsening_request, rows=rows
-    )
-    raise typer.Exit(code)
+    losses.study("solids_study", study_gallery, meshes, output)
 
 
 @app.command("population")
@@ -307,19 +308,6 @@ def population(
         typer.echo()
         print_table(target_table(study))
     raise typer.Exit(code)
-
-
-def _rows(
-    names: Sequence[str] | None, choices: "Choices", weighted: bool, compound: bool
-) -> "tuple[LossVariant, ...]":
-    """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
-    from regolith_studio.session.study_requests import CHOSEN, COMPOUND, chosen_rows
-    from regolith_studio.studies.loss_variants import PAPER_LOSSES
-
-    chosen = tuple(names or (*PAPER_LOSSES, *((CHOSEN,) if weighted else ())))
-    added = (COMPOUND,) if compound and COMPOUND not in chosen else ()
-    with usage_errors():
-        return chosen_rows((*chosen, *added), choices)
 
 
 @dataclass(frozen=True, kw_only=True)
