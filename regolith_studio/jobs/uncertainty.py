@@ -107,13 +107,14 @@ def uncertainty_steps(
 ) -> Steps:
     """Make the budget in `folder`; partial results and the result are :class:`UncertaintyBudget`.
 
-    The folder holds what is known so far after the descriptors and after every heap. Rows and heaps that
-    are known already are not computed again.
+    The folder holds what is known so far after the descriptors and after every heap; no other process writes
+    to it meanwhile. Rows and heaps that are known already are not computed again.
 
     ``workers``: tasks and heaps at the same time; they change no result. ``resume``: whether rows of an
     interrupted run are taken up; heaps always are.
     """
     with (
+        output_lock(folder),
         StudyCheckpoint(folder / JOURNAL / f"{KIND}.sqlite", resume) as answers,
         open_executor(workers) as executor,
     ):
@@ -123,18 +124,6 @@ def uncertainty_steps(
             budget = yield from _angles(chain, request, folder, executor, budget)
             _write(budget, folder)
     return budget
-
-
-def locked_uncertainty(
-    chain: Chain,
-    request: UncertaintyRequest,
-    folder: Path,
-    workers: int | Executor = 1,
-    resume: bool = False,
-) -> Steps:
-    """:func:`uncertainty_steps` in a folder that no other process writes to meanwhile."""
-    with output_lock(folder):
-        return (yield from uncertainty_steps(chain, request, folder, workers, resume))
 
 
 def measure_uncertainty(
@@ -154,7 +143,7 @@ def measure_uncertainty(
     """
     given = source if isinstance(source, Volume) else tuple(source)
     chain = Chain.of(given, **settings)
-    steps = locked_uncertainty(chain, request or UncertaintyRequest(), Path(folder), workers)
+    steps = uncertainty_steps(chain, request or UncertaintyRequest(), Path(folder), workers)
     return cast("UncertaintyBudget", result_of(steps))
 
 

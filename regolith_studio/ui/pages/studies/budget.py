@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QLabel, QSpinBox, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.uncertainty import UncertaintyRequest, locked_uncertainty
+from regolith_studio.jobs.uncertainty import UncertaintyRequest, uncertainty_steps
 from regolith_studio.jobs.uncertainty_chain import Chain
 from regolith_studio.messages import N_
 from regolith_studio.studies.uncertainty import (
@@ -107,7 +107,7 @@ class BudgetPanel(QWidget):
         )
         request = UncertaintyRequest(self.points.currentData(), self.heaps.value())
         self._budget, self._made = None, self._asked()
-        job = Job(locked_uncertainty, (chain, request, Path(folder)), {"resume": True})
+        job = Job(uncertainty_steps, (chain, request, Path(folder)), {"resume": True})
         self.run.start(tr("Budget of uncertainty"), job, self._show, note=folder)
 
     def forget(self) -> None:
