@@ -324,6 +324,8 @@ class Actions:
     def set_theme(self, theme: Theme) -> None:
         for action, name in self._icons:
             action.setIcon(icon(name, theme.text, theme.muted))
+        if (more := self.bar.findChild(QToolButton, "qt_toolbar_ext_button")) is not None:
+            more.setIcon(icon("more", theme.text, theme.muted))  # Qt's is black in every theme
 
     def _add_page(
         self, page: Page, number: int, run: Callable[..., object], go: Callable[[str], object]

@@ -1,12 +1,12 @@
 """Theme and letters: applied when they change, and only then."""
 
+import itertools
 import time
 
 import pytest
 from PySide6.QtCore import QEvent, QObject, QPoint
 from PySide6.QtGui import QColor, QFont, QFontMetrics
 from PySide6.QtWidgets import (
-    QApplication,
     QCheckBox,
     QDialog,
     QDialogButtonBox,
@@ -348,13 +348,19 @@ def test_that_a_line_of_text_is_as_high_as_its_font_in_a_spin_box(app, shown, pe
     assert field.lineEdit().height() >= field.fontMetrics().height()
 
 
-def test_that_a_tool_bar_without_room_shows_where_the_rest_of_it_is(shown, preferences):
+@pytest.mark.usefixtures("usual_looks")
+def test_that_a_tool_bar_without_room_shows_where_the_rest_of_it_is(shown, preferences, app):
     preferences.window = preferences.window | {FONT_SIZE: 150}
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.resize(1000, 700)
     more = window.menus.bar.findChild(QToolButton, "qt_toolbar_ext_button")
-    QApplication.processEvents()
+    app.processEvents()
     assert more.isVisible()
-    image = more.grab().toImage()
-    shades = {image.pixelColor(x, y).lightness() for x in range(image.width()) for y in range(image.height())}
-    assert max(shades) - min(shades) > 60
+    for theme in (LIGHT, DARK):
+        apply_theme(app, theme, window)
+        window.menus.set_theme(theme)
+        app.processEvents()
+        image = more.grab().toImage()
+        places = itertools.product(range(image.width()), range(image.height()))
+        shades = {image.pixelColor(*place).lightness() for place in places}
+        assert max(shades) - min(shades) > 100
