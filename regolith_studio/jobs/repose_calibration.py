@@ -86,23 +86,24 @@ class ReposeCalibrationRequest:
 def calibration_steps(request: ReposeCalibrationRequest, folder: Path) -> Steps:
     """Run one test after the other in `folder`; returns :class:`ReposeCalibration`.
 
-    After each run the folder holds the result so far. Runs that are there already are data and are not run
-    again, also where another angle is wanted.
+    After each run the folder holds the result so far; no other process writes to it meanwhile. Runs that are
+    there already are data and are not run again, also where another angle is wanted.
     """
     total = PROGRESS_STEPS * request.max_runs
     yield Started(N_("Calibration"), total)
     datasets = _by_hash(request.datasets)
     calibration = ReposeCalibration.begin(_parameters(request), request.targets)
     yield Partial(calibration)
-    for number in range(request.max_runs):
-        run = earlier = _earlier_run(request, datasets, folder, number)
-        if run is None:
-            run = yield from _next_run(request, folder, calibration)
-        calibration = calibration.with_run(run)
-        if earlier is None or number == request.max_runs - 1:
-            write_calibration(calibration, folder)
-        yield Progress(PROGRESS_STEPS * (number + 1), total, run.folder)
-        yield Partial(calibration)
+    with output_lock(folder):
+        for number in range(request.max_runs):
+            run = earlier = _earlier_run(request, datasets, folder, number)
+            if run is None:
+                run = yield from _next_run(request, folder, calibration)
+            calibration = calibration.with_run(run)
+            if earlier is None or number == request.max_runs - 1:
+                write_calibration(calibration, folder)
+            yield Progress(PROGRESS_STEPS * (number + 1), total, run.folder)
+            yield Partial(calibration)
     return calibration
 
 
@@ -117,12 +118,6 @@ def kept_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
             break
         calibration = calibration.with_run(run)
     return calibration
-
-
-def locked_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
-    """:func:`calibration_steps` in a folder that no other process writes to meanwhile."""
-    with output_lock(folder):
-        return (yield from calibration_steps(request, folder))
 
 
 def calibrate_repose(
@@ -155,7 +150,7 @@ def calibrate_repose(
     """
     targets = (angle_target(angle, angle_error),)
     wanted = ReposeCalibrationRequest((Path(dataset),), ranges, targets, request or ReposeRequest(), max_runs)
-    return cast("ReposeCalibration", result_of(locked_calibration(wanted, Path(folder))))
+    return cast("ReposeCalibration", result_of(calibration_steps(wanted, Path(folder))))
 
 
 def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]:

@@ -131,7 +131,7 @@ def test_that_the_form_of_a_series_scrolls_before_its_fields_are_cut(page, app):
 
 
 @pytest.mark.parametrize(
-    ("name", "job"), [("study", "run_repose_study"), ("calibration", "locked_calibration")]
+    ("name", "job"), [("study", "run_repose_study"), ("calibration", "calibration_steps")]
 )
 @pytest.mark.usefixtures("threads")
 def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, monkeypatch, name, job):

@@ -17,8 +17,8 @@ from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.repose_calibration import (
     ReposeCalibrationRequest,
+    calibration_steps,
     kept_calibration,
-    locked_calibration,
 )
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import (
@@ -262,7 +262,7 @@ class CalibrationController(SeriesController):
             record = self._panel.show_calibration(calibration, wanted)
             return replace(record, note=record.note or note)
 
-        job = Job(locked_calibration, (wanted, folder))
+        job = Job(calibration_steps, (wanted, folder))
         self.run.start(tr("Angle of repose: calibration"), job, show, note)
 
     def show_kept(self) -> None:
