@@ -496,7 +496,7 @@ class Commands(QObject):
         self, paths: list[Path], suggestion: str, convention: TableConvention = "auto"
     ) -> tuple[str, TableConvention] | None:
         dialog = UnitDialog(paths, suggestion, self._window)
-        dialog.convention.setCurrentIndex(dialog.convention.findData(convention))
+        dialog.convention.choose(convention)
 
         def measure(convention: TableConvention) -> None:
             self._session.run(

@@ -87,10 +87,8 @@ class SourceField(QWidget):
     def __init__(self, count: int, unsaved: int) -> None:
         super().__init__()
         self._count = count - unsaved
-        self.kind = choice("batch_source", tr("Recipe"), ())
         ours = tr("The files of the {count} open particles, as chosen now", count=self._count)
-        self.kind.addItem(ours, "open")
-        self.kind.addItem(tr("A recipe file"), "file")
+        self.kind = choice("batch_source", tr("Recipe"), {"open": ours, "file": N_("A recipe file")})
         kinds = tr("Recipes (*.json)")
         self.file = PathField("batch_recipe", tr("Recipe"), folder=False, filter=kinds)
         left_out = tr(
@@ -106,7 +104,7 @@ class SourceField(QWidget):
 
     def value(self) -> Path | None:
         """The file; ``None`` for the open particles."""
-        return (self.file.value() or Path()) if self.kind.currentData() == "file" else None
+        return (self.file.value() or Path()) if self.kind.value() == "file" else None
 
     def checked(self) -> Path | None:
         """As :meth:`value`."""
@@ -118,7 +116,7 @@ class SourceField(QWidget):
         return path
 
     def _changed(self) -> None:
-        ours = self.kind.currentData() == "open"
+        ours = self.kind.value() == "open"
         self.file.setVisible(not ours)
         self.missing.setVisible(ours and self._unsaved > 0)
         self.changed.emit()
@@ -151,7 +149,7 @@ class WorkersField(QWidget):
         self._changed()
 
     def value(self) -> ExecutorSettings:
-        executor = self.executor.currentData()
+        executor = self.executor.value()
         if executor == "processes":
             return ExecutorSettings("processes", self.count.value())
         if executor == "local":
@@ -168,15 +166,15 @@ class WorkersField(QWidget):
     def field_values(self) -> dict[str, str]:
         """For the next start."""
         tls = self.tls.text.text()
-        return {"place": str(self.executor.currentData()), "address": self.address.text(), "tls": tls}
+        return {"place": self.executor.value(), "address": self.address.text(), "tls": tls}
 
     def restore_fields(self, values: Mapping[str, Any]) -> None:
-        self.executor.setCurrentIndex(max(0, self.executor.findData(values.get("place"))))
+        self.executor.choose(values.get("place"))
         self.address.setText(str(values.get("address", "")))
         self.tls.text.setText(str(values.get("tls", "")))
 
     def _changed(self) -> None:
-        remote = self.executor.currentData() == "address"
+        remote = self.executor.value() == "address"
         encrypted = self.address.text().strip().startswith("tls://")
         self._form.setRowVisible(self.count, not remote)
         self._form.setRowVisible(self.address, remote)

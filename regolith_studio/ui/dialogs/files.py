@@ -126,9 +126,7 @@ class UnitDialog(GrowingDialog):
             form.addRow(tr("Coefficients"), self.convention)
         else:
             self.convention.hide()
-        self.convention.activated.connect(
-            lambda _: self.conventionChanged.emit(self.convention.currentData())
-        )
+        self.convention.activated.connect(lambda _: self.conventionChanged.emit(self.convention.value()))
         buttons = dialog_buttons(self, QDialogButtonBox.StandardButton.Open)
         self._open = buttons.button(QDialogButtonBox.StandardButton.Open)
         vbox(
@@ -159,16 +157,16 @@ class UnitDialog(GrowingDialog):
         self._open.setEnabled(True)
 
     def value(self) -> str:
-        key = str(self.unit.currentData())
+        key: str = self.unit.value()
         return f"voxel:{self.voxel.value():g}" if key == "voxel" else key
 
     def table_convention(self) -> TableConvention:
-        convention: TableConvention = self.convention.currentData()
+        convention: TableConvention = self.convention.value()
         return convention
 
     def setValue(self, unit: str) -> None:
         key, _, size = unit.partition(":")
-        self.unit.setCurrentIndex(max(0, self.unit.findData(key)))
+        self.unit.choose(key)
         if size:
             self.voxel.setValue(float(size))
         self._show_voxel()
@@ -199,7 +197,7 @@ class UnitDialog(GrowingDialog):
         self.size_note.setText(tr("{name} would be {size} across.", name=name, size=size))
 
     def _show_voxel(self) -> None:
-        asked = self.unit.currentData() == "voxel"
+        asked = self.unit.value() == "voxel"
         self.voxel.setEnabled(asked)
         self._voxel_label.setEnabled(asked)
 

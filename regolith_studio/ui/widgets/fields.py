@@ -96,33 +96,58 @@ class ElidedCheckBox(QCheckBox):
         QStylePainter(self).drawControl(QStyle.ControlElement.CE_CheckBox, option)
 
 
+Entries = Mapping[Any, str] | Iterable[tuple[Any, str]]
+"""Values and their labels, which are translated."""
+
+
 class ChoiceBox(ElidedComboBox):
-    """Selects one key of `entries`, a mapping of keys to labels, which are translated."""
+    """Selects one of some values; `capital` begins their labels with one."""
 
-    def __init__(self, name: str, accessible: str, entries: Mapping[str, str]) -> None:
-        super().__init__()
-        self.setObjectName(name)
-        self.setAccessibleName(accessible)
-        for key, label in entries.items():
-            words = tr(label)
-            self.addItem(words[:1].upper() + words[1:], key)
+    def __init__(
+        self,
+        name: str,
+        spoken: str,
+        entries: Entries,
+        elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight,
+        *,
+        capital: bool = True,
+    ) -> None:
+        super().__init__(elide)
+        named(self, name, spoken)
+        self._capital = capital
+        self._add(entries)
 
-    def value(self) -> str:
-        key: str = self.currentData()
-        return key
+    def value(self) -> Any:
+        return self.currentData()
 
-    def setValue(self, key: str) -> None:
-        """Select a key without emitting a signal."""
+    def setValue(self, value: Any) -> None:
+        """Select a value without emitting a signal; an unknown one is ignored."""
         with QSignalBlocker(self):
-            self.setCurrentIndex(self.findData(key))
+            self.choose(value)
+
+    def choose(self, value: Any) -> None:
+        """Select a value as a user would; an unknown one is ignored."""
+        if (place := self.findData(value)) >= 0:
+            self.setCurrentIndex(place)
+
+    def offer(self, entries: Entries) -> None:
+        """Offer other values; the selected one stays if it is among them, and no signal is emitted."""
+        chosen = self.value()
+        with QSignalBlocker(self):
+            self.clear()
+            self._add(entries)
+            self.choose(chosen)
+
+    def _add(self, entries: Entries) -> None:
+        for value, label in entries.items() if isinstance(entries, Mapping) else entries:
+            words = tr(label)
+            self.addItem(words[:1].upper() + words[1:] if self._capital else words, value)
 
 
-def choice(name: str, spoken: str, entries: Mapping[Any, str] | Iterable[tuple[Any, str]]) -> QComboBox:
-    """A combo box of values and their labels, which are translated, as wide as the longest if it can be."""
-    box = named(ElidedComboBox(), name, spoken)
+def choice(name: str, spoken: str, entries: Entries) -> ChoiceBox:
+    """A box whose labels are shown as they are, as wide as the longest if it can be."""
+    box = ChoiceBox(name, spoken, entries, capital=False)
     box.prefers_whole = True
-    for key, label in entries.items() if isinstance(entries, Mapping) else entries:
-        box.addItem(tr(label), key)
     return box
 
 

@@ -1,7 +1,8 @@
 """Forms made from the fields of a dataclass: a row each, by its label, unit, range and help."""
 
 import dataclasses
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -19,7 +20,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dataset.parameters import NOT_GIVEN
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.fields import ChoiceBox, DecimalField, NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.fields import ChoiceBox, DecimalField, NumberSlider, NumbersLine, NumberSpec
 from regolith_studio.ui.widgets.labels import rich_symbol
 
 Scalar = bool | int | float | str
@@ -79,7 +80,8 @@ class SettingsForm(QWidget):
     def setValue(self, value: Any) -> None:
         """Show these settings, the others at their defaults; announces nothing."""
         for name, editor in self.editors.items():
-            _write(editor, _shown(self._settings[name], value.get(name, self._default(name))))
+            with QSignalBlocker(editor):
+                _enter(editor, _shown(self._settings[name], value.get(name, self._default(name))))
 
     def is_empty(self) -> bool:
         """Whether the dataclass has no settings that can be edited."""
@@ -226,6 +228,8 @@ def _value(editor: QWidget) -> Any:
     match editor:
         case QCheckBox():
             return editor.isChecked()
+        case NumbersLine():
+            return editor.value()
         case QLineEdit():
             return editor.text()
         case ChoiceBox() | QSpinBox() | QDoubleSpinBox() | NumberSlider():
@@ -233,17 +237,39 @@ def _value(editor: QWidget) -> Any:
     raise AssertionError("every editor is one of these")
 
 
-def _write(editor: QWidget, value: Any) -> None:
-    with QSignalBlocker(editor):
-        match editor:
-            case QCheckBox():
-                editor.setChecked(bool(value))
-            case QLineEdit():
-                editor.setText(str(value))
-            case QSpinBox():
-                editor.setValue(int(value))
-            case ChoiceBox() | QDoubleSpinBox() | NumberSlider():
-                editor.setValue(value)
+def _enter(editor: QWidget, value: Any) -> None:
+    match editor:
+        case QCheckBox():
+            editor.setChecked(bool(value))
+        case NumbersLine():
+            editor.setValue(str(value))
+        case QLineEdit():
+            editor.setText(str(value))
+        case QSpinBox():
+            editor.setValue(int(value))
+        case ChoiceBox():
+            editor.choose(value)
+        case QDoubleSpinBox() | NumberSlider():
+            editor.setValue(float(value))
+
+
+def field_values(fields: Mapping[str, QWidget]) -> dict[str, Any]:
+    """What fields show, as plain JSON."""
+    return {name: _value(field) for name, field in fields.items()}
+
+
+def enter_values(fields: Mapping[str, QWidget], values: Mapping[str, Any]) -> None:
+    """Enter values as a user would; absent ones, and those that are none for their field, are ignored."""
+    for name, field in fields.items():
+        if name in values:
+            with suppress(TypeError, ValueError, OverflowError):
+                _enter(field, values[name])
+
+
+def on_change(fields: Iterable[QWidget], action: Callable[[], object]) -> None:
+    """Call `action` whenever one of the fields changes."""
+    for field in fields:
+        _signal(field).connect(lambda *_: action())
 
 
 class ParameterForm(SettingsForm):

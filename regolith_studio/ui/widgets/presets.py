@@ -13,7 +13,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.layout import control_row, named
 from regolith_studio.ui.translation import inert, tr
-from regolith_studio.ui.widgets.fields import ElidedComboBox
+from regolith_studio.ui.widgets.fields import ChoiceBox
 from regolith_studio.ui.widgets.forms import ParameterForm
 
 MODIFIED = N_("{preset} (modified)")
@@ -52,9 +52,8 @@ class PresetBar(QWidget):
     def __init__(self, name: str, accessible: str, title: QWidget | None = None) -> None:
         super().__init__()
         self._entries: tuple[PresetEntry, ...] = ()
-        self.box = ElidedComboBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
-        self.box.setObjectName(name)
-        self.box.setAccessibleName(accessible)
+        middle = Qt.TextElideMode.ElideMiddle  # the mark at the end must be seen
+        self.box = ChoiceBox(name, accessible, (), middle, capital=False)
         self.reset = named(QPushButton(tr("Reset")), tip=tr("Back to the values of the preset"))
         self.more = QToolButton()
         self.more.setObjectName(f"{name}_more")
@@ -75,7 +74,7 @@ class PresetBar(QWidget):
 
     def current(self) -> str:
         """Key of the selected preset; empty for none."""
-        return str(self.box.currentData() or "")
+        return self.box.value() or ""
 
     def set_entries(self, entries: Sequence[PresetEntry]) -> None:
         if tuple(entries) == self._entries:

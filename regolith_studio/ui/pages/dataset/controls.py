@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QLineEdit,
     QPushButton,
@@ -50,8 +50,6 @@ class RepresentativesPanel(QWidget):
     """Number and weighting of the representatives."""
 
     countChanged = Signal(int)  # noqa: N815
-    orderChanged = Signal()  # noqa: N815
-    findRequested = Signal()  # noqa: N815
     whichChanged = Signal()  # noqa: N815
 
     def __init__(self) -> None:
@@ -79,17 +77,15 @@ class RepresentativesPanel(QWidget):
         self._wanted = 10
         self.count.setValue(self._wanted)
         self.count.valueChanged.connect(self._count_changed)
-        self.weighting.currentIndexChanged.connect(lambda _: self.orderChanged.emit())
-        self.start.clicked.connect(self.findRequested)
         self.which.currentIndexChanged.connect(lambda _: self._show_which())
 
     @property
     def every(self) -> bool:
         """Whether each particle is its own representative."""
-        return not self.which.currentData()
+        return not self.which.value()
 
     def request(self) -> RepresentativesRequest:
-        return RepresentativesRequest(int(self.count.value()), self.weighting.currentData())
+        return RepresentativesRequest(int(self.count.value()), self.weighting.value())
 
     def recipe_part(self, sizes: str, name: str) -> Representatives:
         """The fields of a recipe for representatives and dataset."""
@@ -113,7 +109,7 @@ class RepresentativesPanel(QWidget):
     def value(self) -> dict[str, Any]:
         """Plain JSON."""
         count = 0 if self.every else int(self.count.value())
-        return {"count": count, "weighting": self.weighting.currentData()}
+        return {"count": count, "weighting": self.weighting.value()}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices without emitting a signal.
@@ -123,11 +119,9 @@ class RepresentativesPanel(QWidget):
         if count := int(value.get("count", 10)):
             self._wanted = count
             self.count.setValue(count)
-        with QSignalBlocker(self.which):
-            self.which.setCurrentIndex(0 if count else 1)
+        self.which.setValue(bool(count))
         self._enable()
-        with QSignalBlocker(self.weighting):
-            self.weighting.setCurrentIndex(max(0, self.weighting.findData(value.get("weighting"))))
+        self.weighting.setValue(value.get("weighting"))
 
     def _show_which(self) -> None:
         self._enable()
@@ -163,16 +157,15 @@ class SizesPanel(QWidget):
 
     def text(self) -> str:
         """As :mod:`regolith_studio.dataset.size_distributions` writes it."""
-        key = self.kind.currentData()
-        return f"{key}:{self.numbers.value().strip()}" if SIZES[key][1] else str(key)
+        key = self.kind.value()
+        return f"{key}:{self.numbers.value().strip()}" if SIZES[key][1] else key
 
     def set_text(self, text: str) -> None:
         """Show another distribution; an unknown one is ignored."""
         key = next((key for key in SIZES if text == key or text.startswith(f"{key}:")), "")
         if not key:
             return
-        with QSignalBlocker(self.kind):
-            self.kind.setCurrentIndex(self.kind.findData(key))
+        self.kind.setValue(key)
         self._show_kind()
         if SIZES[key][1]:
             self.numbers.setValue(text.removeprefix(f"{key}:"))
@@ -197,7 +190,7 @@ class SizesPanel(QWidget):
         return "" if self.problem.isHidden() else self.problem.text()
 
     def _show_kind(self) -> None:
-        key = self.kind.currentData()
+        key = self.kind.value()
         example = SIZES[key][1]
         self.numbers.setEnabled(bool(example))
         self.numbers.setValue(example)
@@ -213,8 +206,6 @@ class SizesPanel(QWidget):
 class FolderPanel(QWidget):
     """Name of the dataset, its shapes, and the button that opens one."""
 
-    openRequested = Signal()  # noqa: N815
-
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("dataset_folder")
@@ -223,7 +214,6 @@ class FolderPanel(QWidget):
         self.open = named(QPushButton(tr("Open a dataset …")), "dataset_open")
         asked, there = FixedHeightText((self.shapes,)), FixedHeightText((self.state,))
         vbox(heading(tr("3  Dataset")), self.name, asked, self.open, there, parent=self)
-        self.open.clicked.connect(self.openRequested)
         self.show_dataset("")
 
     def folder_name(self) -> str:

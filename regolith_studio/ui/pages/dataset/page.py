@@ -464,7 +464,7 @@ class DatasetPage(PageWidget):
 
     def _settings(self) -> tuple[Any, ...]:
         """What a dataset that is built now depends on, besides the particles and their number."""
-        weighting = self.representatives.weighting.currentData()
+        weighting = self.representatives.weighting.value()
         every, choices = self.representatives.every, self._context.session.choices
         return self.sizes.text(), every, weighting, choices.coarsening_request
 
@@ -530,14 +530,14 @@ class DatasetPage(PageWidget):
         self.losses.show_formats(self.targets.chosen(), self.targets.refusing())
 
     def _connect(self) -> None:
-        self.representatives.findRequested.connect(self.find_representatives)
+        self.representatives.start.clicked.connect(self.find_representatives)
         self.representatives.countChanged.connect(self._choose)
-        self.representatives.orderChanged.connect(
+        self.representatives.weighting.currentIndexChanged.connect(
             lambda: self.find_representatives() if self._survey else None
         )
         self.sizes.sizesChanged.connect(self._show_sizes)
         self.representatives.whichChanged.connect(self._show_chosen)
-        self.folder.openRequested.connect(self.open_dataset)
+        self.folder.open.clicked.connect(self.open_dataset)
         self.open_written.clicked.connect(self._open_written)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)

@@ -53,7 +53,7 @@ class LecturePage(PageWidget):
         self.field = FieldView(context)
         for lesson in (self.annealing, self.degrees, self.field):
             lesson.build()
-        self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
+        self.particle = ChoiceBox("lecture_particle", tr("Particle"), (), capital=False)
         self.particle.setMinimumContentsLength(LETTERS_OF_NAME)
         self.another = named(QPushButton(tr("Another seed")), "lecture_another")
         self.request = hint_label()
@@ -228,13 +228,9 @@ class LecturePage(PageWidget):
 
     def _show_particles(self) -> None:
         ids = [entry.id for entry in self._session.particles]
-        self.particle.blockSignals(True)
         if [self.particle.itemText(place) for place in range(self.particle.count())] != ids:
-            self.particle.clear()
-            for each in ids:
-                self.particle.addItem(each, each)
-        self.particle.setCurrentIndex(self.particle.findData(self._session.choices.selected))
-        self.particle.blockSignals(False)
+            self.particle.offer(zip(ids, ids, strict=True))
+        self.particle.setValue(self._session.choices.selected)
 
     def _select(self) -> None:
         if self.particle.currentIndex() >= 0:

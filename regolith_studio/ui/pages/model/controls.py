@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -39,13 +39,12 @@ from regolith_studio.ui.views.view import SceneView, ViewFrame
 from regolith_studio.ui.widgets.fields import (
     ChoiceBox,
     ElidedCheckBox,
-    ElidedComboBox,
     NumberSlider,
     NumberSpec,
     decimal_field,
     whole_field,
 )
-from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
+from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm, on_change
 from regolith_studio.ui.widgets.labels import (
     ElidedLabel,
     FixedHeightText,
@@ -72,14 +71,13 @@ class SourceControls(QWidget):
 
     sourceChanged = Signal(str)  # noqa: N815
     requestChanged = Signal()  # noqa: N815
-    openRequested = Signal()  # noqa: N815
-    fitRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("model_source")
-        self.source = named(ElidedComboBox(), "model_source", tr("Source of the model"))
-        self.model = named(ElidedComboBox(), "model_model", tr("Kind of model"))
+        self.source = ChoiceBox("model_source", tr("Source of the model"), (), capital=False)
+        labels = {key: model.label for key, model in MODELS.items()}
+        self.model = ChoiceBox("model_model", tr("Kind of model"), labels, capital=False)
         self.l_max = NumberSlider(L_MAX)
         half, tip = (
             tr("Fit to a half"),
@@ -93,28 +91,22 @@ class SourceControls(QWidget):
         self._forms = QStackedWidget()
         self._configure()
         self._place()
-        self.source.currentIndexChanged.connect(lambda _: self.sourceChanged.emit(self.source.currentData()))
+        self.source.currentIndexChanged.connect(lambda _: self.sourceChanged.emit(self.source.value()))
         self.model.currentIndexChanged.connect(lambda _: self._show_model())
         forms = (form.edited for form in self.forms.values())
         for changed in (self.half.toggled, self.l_max.valueChanged, *forms):
             changed.connect(lambda *_: self.requestChanged.emit())
-        self.open.clicked.connect(self.openRequested)
-        self.fit.clicked.connect(self.fitRequested)
         self._show_model()
 
     def set_sources(self, sources: Mapping[str, str]) -> None:
         """Set the sources by key; the selection stays if possible."""
-        chosen = self.source.currentData()
-        with QSignalBlocker(self.source):
-            self.source.clear()
-            for key, label in sources.items():
-                self.source.addItem(label, key)
-            self.source.setCurrentIndex(max(0, self.source.findData(chosen)))
-        if self.source.currentData() != chosen:
-            self.sourceChanged.emit(self.source.currentData())
+        chosen = self.source.value()
+        self.source.offer(sources)
+        if self.source.value() != chosen:
+            self.sourceChanged.emit(self.source.value())
 
     def choose_source(self, key: str) -> None:
-        self.source.setCurrentIndex(max(0, self.source.findData(key)))
+        self.source.choose(key)
 
     def show_kind(self, brings_model: str, max_degree: int, words: str) -> None:
         """Describe the source.
@@ -129,7 +121,7 @@ class SourceControls(QWidget):
         for widget in (self.half, self._forms):
             widget.setEnabled(not brings_model)
         if brings_model:
-            self.model.setCurrentIndex(self.model.findData(brings_model))
+            self.model.choose(brings_model)
         self.fit.setText(tr("Use the model") if brings_model else tr("Fit the model"))
         self.l_max.setEnabled(brings_model in ("", LOG_FIELD))
         self.l_max.slider.setMaximum(max_degree)
@@ -138,8 +130,8 @@ class SourceControls(QWidget):
     def value(self) -> dict[str, Any]:
         """Source, model, degree, half, and the modified settings of each model."""
         return {
-            "source": self.source.currentData(),
-            "model": self.model.currentData(),
+            "source": self.source.value(),
+            "model": self.model.value(),
             "l_max": int(self.l_max.value()),
             "half": self.half.isChecked(),
             "settings": {key: form.value() for key, form in self.forms.items() if form.value()},
@@ -147,17 +139,15 @@ class SourceControls(QWidget):
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices; unknown names are ignored."""
-        if (at := self.source.findData(value.get("source"))) >= 0:
-            self.source.setCurrentIndex(at)
-        if (at := self.model.findData(value.get("model"))) >= 0:
-            self.model.setCurrentIndex(at)
+        self.source.choose(value.get("source"))
+        self.model.choose(value.get("model"))
         self.l_max.setValue(int(value.get("l_max", default_degree(DEFAULT_MODEL))))
         self.half.setChecked(bool(value.get("half", False)))
         for key, form in self.forms.items():
             form.setValue(dict(value.get("settings", {})).get(key, {}))
 
     def _show_model(self) -> None:
-        key = self.model.currentData()
+        key = self.model.value()
         self.l_max.setValue(default_degree(key))
         self.summary.setText(tr(MODELS[key].summary))
         self._forms.setCurrentWidget(self.forms[key])
@@ -166,10 +156,9 @@ class SourceControls(QWidget):
         self.requestChanged.emit()
 
     def _configure(self) -> None:
-        for key, model in MODELS.items():
-            self.model.addItem(tr(model.label), key)
-            self._forms.addWidget(self.forms[key])
-        self.model.setCurrentIndex(self.model.findData(DEFAULT_MODEL))
+        for form in self.forms.values():
+            self._forms.addWidget(form)
+        self.model.choose(DEFAULT_MODEL)
         self.l_max.setValue(default_degree(DEFAULT_MODEL))
         self.l_max.field.setObjectName("model_l_max")
 
@@ -191,7 +180,6 @@ class DrawControls(QWidget):
     """Number, seed and sizes of the drawn particles."""
 
     requestChanged = Signal()  # noqa: N815
-    adoptRequested = Signal()  # noqa: N815
     namesChanged = Signal(tuple)  # noqa: N815
 
     def __init__(self) -> None:
@@ -229,12 +217,8 @@ class DrawControls(QWidget):
         self._place()
         self.names.editingFinished.connect(self._rename)
         self.limited.toggled.connect(self._limit)
-        for changed in (
-            *(self.number.valueChanged, self.seed.valueChanged, self.limited.toggled),
-            *(self.smallest.valueChanged, self.largest.valueChanged),
-        ):
-            changed.connect(lambda *_: self.requestChanged.emit())
-        self.adopt.clicked.connect(self.adoptRequested)
+        fields = (self.number, self.seed, self.limited, self.smallest, self.largest)
+        on_change(fields, self.requestChanged.emit)
         self._limit(False)
         self.set_ready(source=False, drawn=False)
         self.show_names(())

@@ -41,6 +41,7 @@ from regolith_studio.ui.layout import scrolled, tabs, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
+from regolith_studio.ui.widgets.forms import enter_values, field_values
 from regolith_studio.ui.widgets.heat_table import centred_hint
 from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, unbroken, with_subscripts
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -283,6 +284,7 @@ class EvaluationPanel(QWidget):
         self.setObjectName("model_judgement")
         self.all_models = QCheckBox(tr("all models"))
         self.splits, self.repeats = QSpinBox(), QSpinBox()
+        self._fields = {"all_models": self.all_models, "splits": self.splits, "repeats": self.repeats}
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = hint_label()
         captions = (tr("W / noise"), tr("Classifier accuracy"))
@@ -303,16 +305,10 @@ class EvaluationPanel(QWidget):
 
     def value(self) -> dict[str, Any]:
         """All models or only the selected one, number of splits, and draws from each fit."""
-        return {
-            "all_models": self.all_models.isChecked(),
-            "splits": self.splits.value(),
-            "repeats": self.repeats.value(),
-        }
+        return field_values(self._fields)
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        self.all_models.setChecked(bool(value.get("all_models", False)))
-        self.splits.setValue(int(value.get("splits", 5)))
-        self.repeats.setValue(int(value.get("repeats", 1)))
+        enter_values(self._fields, value)
 
     def show_evaluated(self, evaluated: ModelEvaluationResult | None) -> ResultRecord:
         """Show a study, complete or not, or nothing; returns the record of the card."""

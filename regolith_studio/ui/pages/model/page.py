@@ -627,11 +627,11 @@ class ModelPage(PageWidget):
 
     def _connect(self) -> None:
         self.source.sourceChanged.connect(lambda _: self._on_source())
-        self.source.openRequested.connect(self.open_source)
-        self.source.fitRequested.connect(self.fit_model)
+        self.source.open.clicked.connect(self.open_source)
+        self.source.fit.clicked.connect(self.fit_model)
         for panel in (self.source, self.drawing):
             panel.requestChanged.connect(self._mark_drawn)
-        self.drawing.adoptRequested.connect(self.adopt)
+        self.drawing.adopt.clicked.connect(self.adopt)
         self.drawing.namesChanged.connect(lambda names: self._try(lambda: self._rename(names)))
         self.live.spectrum.valueChanged.connect(self._edit)
         self.live.reset.clicked.connect(self.live.spectrum.reset)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QFormLayout, QSpinBox, QWidget
+from PySide6.QtWidgets import QFormLayout, QWidget
 
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dem.run_io import RunSummary
@@ -40,11 +40,10 @@ from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
-from regolith_studio.ui.widgets.fields import DecimalField, NumbersLine, choice, decimal_field, whole_field
+from regolith_studio.ui.widgets.fields import NumbersLine, choice, decimal_field, whole_field
+from regolith_studio.ui.widgets.forms import enter_values, field_values
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import TextTable
-
-Field = QComboBox | NumbersLine | QSpinBox | DecimalField
 
 
 class RunPanel(QWidget):
@@ -62,7 +61,7 @@ class RunPanel(QWidget):
         self,
         name: str,
         card: ResultView,
-        fields: Mapping[str, tuple[str, Field]],
+        fields: Mapping[str, tuple[str, QWidget]],
         views: Sequence[QWidget],
     ) -> None:
         super().__init__()
@@ -86,13 +85,11 @@ class RunPanel(QWidget):
 
     def state(self) -> dict[str, Any]:
         """The values as plain JSON."""
-        return {name: _value(field) for name, field in self._fields.items()}
+        return field_values(self._fields)
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Show what :meth:`state` returned; unknown values are ignored."""
-        for name, field in self._fields.items():
-            if name in state:
-                _restore(field, state[name])
+        enter_values(self._fields, state)
 
 
 class SeriesController:
@@ -124,20 +121,6 @@ class SeriesController:
 
 def _labels(entries: Mapping[str, tuple[str, str]]) -> dict[str, str]:
     return {key: label for key, (label, _) in entries.items()}
-
-
-def _value(field: Field) -> Any:
-    return field.currentData() if isinstance(field, QComboBox) else field.value()
-
-
-def _restore(field: Field, value: Any) -> None:
-    if isinstance(field, QComboBox):
-        if (place := field.findData(value)) >= 0:
-            field.setCurrentIndex(place)
-    elif isinstance(field, NumbersLine):
-        field.setValue(str(value))
-    elif isinstance(value, int | float):
-        field.setValue(int(value) if isinstance(field, QSpinBox) else value)  # type: ignore[arg-type]
 
 
 PARAMETERS: Mapping[str, tuple[str, str]] = {
@@ -180,7 +163,7 @@ class CalibrationPanel(RunPanel):
         interval = tr("{share:.0%} interval", share=CONFIDENCE)
         captions = (tr("Static friction"), interval)
         card = ResultView("repose_calibration_result", captions, tr("Start"), tr("Resume"))
-        fields: dict[str, tuple[str, Field]] = {
+        fields: dict[str, tuple[str, QWidget]] = {
             "angle": (tr("Wanted angle"), self.angle),
             "error": (tr("Standard error"), self.error),
             "density": (tr("Bulk density"), self.density),
@@ -189,9 +172,7 @@ class CalibrationPanel(RunPanel):
             "runs": (tr("Runs"), self.runs),
         }
         super().__init__("repose_calibration", card, fields, (self.prediction, self.posterior))
-        self.key.currentIndexChanged.connect(
-            lambda *_: self.range.setValue(PARAMETERS[str(self.key.currentData())][1])
-        )
+        self.key.currentIndexChanged.connect(lambda *_: self.range.setValue(PARAMETERS[self.key.value()][1]))
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         self._draw()
@@ -200,7 +181,7 @@ class CalibrationPanel(RunPanel):
         """The request of the panel, with the dataset and all other values of a run."""
         if dataset is None:
             raise InputError(N_("There is no dataset yet: open or build one first."))
-        key = str(self.key.currentData())
+        key = self.key.value()
         ends = [float(end) for end in values_in(key, self.range.value())]
         if len(ends) != 2:
             raise InputError(
@@ -388,7 +369,7 @@ class StudyPanel(RunPanel):
         self.table = TextTable("repose_study_runs", tr("Runs of the study"), [tr(each) for each in HEADINGS])
         self.plot = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
         card = ResultView("repose_study_result", (tr("Angles"),), tr("Start"), tr("Resume"))
-        fields: dict[str, tuple[str, Field]] = {
+        fields: dict[str, tuple[str, QWidget]] = {
             "key": (tr("Vary"), self.key),
             "values": (tr("Values"), self.values),
             "repeats": (tr("Runs per value"), self.repeats),
@@ -403,7 +384,7 @@ class StudyPanel(RunPanel):
 
     def request(self) -> tuple[str, tuple[float | str, ...], int, int]:
         """Varied parameter, values, number of repetitions, and runs at the same time."""
-        key = str(self.key.currentData())
+        key = self.key.value()
         return key, values_in(key, self.values.value()), self.repeats.value(), self.workers.value()
 
     def show_study(self, study: ReposeStudy | None) -> ResultRecord:
@@ -453,7 +434,7 @@ class StudyPanel(RunPanel):
         )
 
     def _propose(self) -> None:
-        key = str(self.key.currentData())
+        key = self.key.value()
         self.values.setValue(VARIED[key][1])
         tip = tr("Names of presets: {names}", names=", ".join(presets())) if key == "preset" else ""
         self.values.setToolTip(tip)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QWidget
+from PySide6.QtCore import QPointF, Signal
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.drum_angle import compare_angles
@@ -18,10 +18,11 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.messages import N_
 from regolith_studio.studies.figures.repose import framed
-from regolith_studio.ui.layout import named, vbox
+from regolith_studio.ui.layout import vbox
 from regolith_studio.ui.pages.repose.setup import CaseScale
 from regolith_studio.ui.result_card import ResultRecord, ResultState
 from regolith_studio.ui.translation import localized, tr, translate
+from regolith_studio.ui.widgets.fields import choice
 from regolith_studio.ui.widgets.labels import hint_label
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -303,7 +304,7 @@ class HeapSections(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._sections: dict[float, HeapSection] = {}
-        self.azimuth = named(QComboBox(), "repose_azimuth", tr("Section"))
+        self.azimuth = choice("repose_azimuth", tr("Section"), ())
         self.plot = SectionPlot()
         self.course = CurvePlot(tr("Time [s]"), tr("Angle of the surface [°]"), "")
         self.course.hide()
@@ -321,12 +322,7 @@ class HeapSections(QWidget):
     def show_heap(self, pile: ParticleState, measured: ReposeMeasurement | NotAPileError) -> None:
         """Show other sections, at the azimuth that is chosen."""
         self._sections = heap_sections(pile, measured)
-        chosen = self.azimuth.currentData()
-        with QSignalBlocker(self.azimuth):
-            self.azimuth.clear()
-            for azimuth, heap in self._sections.items():
-                self.azimuth.addItem(_section_text(heap), azimuth)
-            self.azimuth.setCurrentIndex(max(0, self.azimuth.findData(chosen)))
+        self.azimuth.offer({azimuth: _section_text(heap) for azimuth, heap in self._sections.items()})
         self._offer(True)
         self._show_chosen()
 
@@ -361,7 +357,7 @@ class HeapSections(QWidget):
         self._label.setVisible(visible)
 
     def _show_chosen(self) -> None:
-        if heap := self._sections.get(self.azimuth.currentData()):
+        if heap := self._sections.get(self.azimuth.value()):
             self.plot.show_heap(heap)
 
 

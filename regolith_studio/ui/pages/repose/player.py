@@ -88,13 +88,13 @@ class PositionsDialog(GrowingDialog):
         self.columns.textChanged.connect(self._offer_diameter)
         low, high = HEAP_WIDTHS
         fitting = (key for key in UNITS if low <= self._width * _metres(key) <= high)
-        self.unit.setCurrentIndex(self.unit.findData(next(fitting, "m")))
+        self.unit.choose(next(fitting, "m"))
         self._show_size()
         if read is None:
             self._offer_diameter()
 
     def _show_size(self) -> None:
-        width = short_number(1e3 * self._width * _metres(self.unit.currentData()), 3)
+        width = short_number(1e3 * self._width * _metres(self.unit.value()), 3)
         self.size_note.setText(tr("The particles would extend over {width} mm.", width=width))
         self.size_note.setVisible(self._width > 0.0 and self.unit.isVisibleTo(self))
 
@@ -174,7 +174,7 @@ def read_pile(parent: QWidget, path: Path) -> tuple[ImportedHeap, ParticleState,
         accepted = dialog.exec() == QDialog.DialogCode.Accepted
         columns = dialog.columns.text() if read is None else ""
         diameter = 1e-3 * dialog.diameter.value()
-        heap = replace(heap, unit=dialog.unit.currentData(), columns=columns, diameter=diameter)
+        heap = replace(heap, unit=dialog.unit.value(), columns=columns, diameter=diameter)
         dialog.deleteLater()
         if not accepted:
             return None

@@ -88,7 +88,7 @@ class RunsPanel(QWidget):
         return None if row is None else self._runs[row]
 
     def _compare(self) -> None:
-        path = tuple(self.against.currentData())
+        path = self.against.value()
         points = sorted(
             (
                 float(value),

@@ -6,18 +6,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QBoxLayout,
-    QComboBox,
     QFormLayout,
     QFrame,
     QHBoxLayout,
     QLabel,
     QLayout,
     QPushButton,
-    QSpinBox,
     QVBoxLayout,
     QWidget,
 )
@@ -42,8 +40,14 @@ from regolith_studio.ui.layout import Collapsible, hbox, named
 from regolith_studio.ui.pages.repose.runs import duration_text
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
-from regolith_studio.ui.widgets.fields import ElidedComboBox, decimal_field
-from regolith_studio.ui.widgets.forms import SettingsForm
+from regolith_studio.ui.widgets.fields import choice, decimal_field, whole_field
+from regolith_studio.ui.widgets.forms import (
+    LARGEST_NUMBER,
+    SettingsForm,
+    enter_values,
+    field_values,
+    on_change,
+)
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
 from regolith_studio.ui.widgets.presets import PresetForm
 from regolith_studio.ui.widgets.table import TextTable
@@ -207,8 +211,8 @@ MAX_PARTICLES = 400_000
 COLUMN_GAP = 24
 """Pixels between both columns of the set-up."""
 PRESETS = {N_("Teaching"): 300, N_("Standard"): 1000, N_("Fine"): 5000}
-SHAPES = {N_("The dataset's polyhedra"): "polyhedra", N_("Spheres of the same volumes"): "spheres"}
-APPARATUS = {N_("Lifting cylinder"): "cylinder", N_("Rotating drum"): "drum"}
+SHAPES = {"polyhedra": N_("The dataset's polyhedra"), "spheres": N_("Spheres of the same volumes")}
+APPARATUS = {"cylinder": N_("Lifting cylinder"), "drum": N_("Rotating drum")}
 OF_DRUM = {
     name: (value, getattr(LiftingCylinderTest(), name))
     for name, value in vars(DRUM).items()
@@ -216,11 +220,11 @@ OF_DRUM = {
 }
 """Values of the usual drum and of the lifting cylinder, where they differ."""
 KEPT = "kept"
-FILLINGS = {N_("Kept if equal, else new"): KEPT, N_("New"): ""}
+FILLINGS = {KEPT: N_("Kept if equal, else new"), "": N_("New")}
 COHESION = {
-    N_("None"): "none",
-    N_("As given (experimental)"): "given",
-    N_("Scaled with the size (experimental)"): "scaled",
+    "none": N_("None"),
+    "given": N_("As given (experimental)"),
+    "scaled": N_("Scaled with the size (experimental)"),
 }
 
 
@@ -230,8 +234,6 @@ class SetupPanel(QWidget):
     valueChanged = Signal()  # noqa: N815
     evaluationChanged = Signal()  # noqa: N815
     measuredChanged = Signal()  # noqa: N815
-    datasetWanted = Signal()  # noqa: N815
-    sampleWanted = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
@@ -244,35 +246,34 @@ class SetupPanel(QWidget):
         self.sample_button = _button(
             tr("From open particles"), "repose_sample", tr("Coarsen the open particles first")
         )
-        self.particles = named(QSpinBox(), "repose_particles", tr("Number of particles"))
-        self.particles.setMaximum(MAX_PARTICLES)
+        spoken = tr("Number of particles")
+        self.particles = whole_field("repose_particles", spoken, 0, MAX_PARTICLES, PRESETS["Teaching"])
         self.particles.setSingleStep(100)
         self.particles.setKeyboardTracking(False)
-        self.particles.setValue(PRESETS["Teaching"])
-        self.seed = named(QSpinBox(), "repose_seed", tr("Seed"))
-        self.seed.setRange(0, 2**31 - 1)
-        self.shapes = _choice(SHAPES, "repose_shapes", tr("Shapes"))
-        self.cohesion = _choice(COHESION, "repose_cohesion", tr("Cohesion"))
-        self.engine = _choice(
-            {engine.label: key for key, engine in ENGINES.items()}, "repose_engine", tr("Engine")
-        )
-        self.gravity = _choice(
-            {f"{tr(name)} ({number_text(value, 'g')} m/s²)": str(value) for name, value in GRAVITIES.items()}
-            | {tr("Other"): ""},
-            "repose_gravity_of",
-            tr("Gravity of"),
-        )
+        self.seed = whole_field("repose_seed", tr("Seed"), 0, LARGEST_NUMBER)
+        self.shapes = choice("repose_shapes", tr("Shapes"), SHAPES)
+        self.cohesion = choice("repose_cohesion", tr("Cohesion"), COHESION)
+        labels = {key: engine.label for key, engine in ENGINES.items()}
+        self.engine = choice("repose_engine", tr("Engine"), labels)
+        places = {g: f"{tr(name)} ({number_text(g, 'g')} m/s²)" for name, g in GRAVITIES.items()}
+        self.gravity = choice("repose_gravity_of", tr("Gravity of"), places | {0.0: N_("Other")})
         self._runs: tuple[Path, ...] = ()
-        self.filling = _choice(
-            {N_("Kept if equal, else new"): KEPT, N_("New"): ""}, "repose_filling", tr("Filling")
-        )
+        self.filling = choice("repose_filling", tr("Filling"), FILLINGS)
         self.filling.setToolTip(
             tr(
                 "A filling of an earlier run is used again where dataset, number, cylinder, seed, friction "
                 "and engine are the same; one that is chosen here also where the friction is another."
             )
         )
-        self.apparatus = _choice(APPARATUS, "repose_apparatus", tr("Test"))
+        self.apparatus = choice("repose_apparatus", tr("Test"), APPARATUS)
+        self._fields: dict[str, QWidget] = {
+            "apparatus": self.apparatus,
+            "particles": self.particles,
+            "seed": self.seed,
+            "shapes": self.shapes,
+            "cohesion": self.cohesion,
+            "engine": self.engine,
+        }
         self.drum = SettingsForm(DrumRotation, prefix="drum_")
         self.measured = decimal_field("repose_measured", tr("Measured dynamic angle"), 0.0, 90.0, 0.0, "°", 1)
         self.measured.setSpecialValueText(tr("None"))
@@ -293,7 +294,7 @@ class SetupPanel(QWidget):
 
     @property
     def numerics(self) -> SettingsForm:
-        return self._numerics[self.engine.currentData()]
+        return self._numerics[self.engine.value()]
 
     @property
     def dataset(self) -> Path | None:
@@ -317,27 +318,21 @@ class SetupPanel(QWidget):
 
     def set_fillings(self, folders: Sequence[Path]) -> None:
         """Offer the fillings of other runs; the chosen one stays if it is among them."""
-        chosen = self.filling.currentData()
         self._runs = tuple(folders)
-        with QSignalBlocker(self.filling):
-            while self.filling.count() > 2:
-                self.filling.removeItem(2)
-            for folder in folders:
-                self.filling.addItem(tr("Of {run}", run=folder.name), str(folder))
-            self.filling.setCurrentIndex(max(0, self.filling.findData(chosen)))
+        self.filling.offer(FILLINGS | {str(each): tr("Of {run}", run=each.name) for each in folders})
 
     def request(self) -> ReposeRequest:
-        engine = engine_named(self.engine.currentData())
+        engine = engine_named(self.engine.value())
         case = ReposeCase(
             test=self.test.value(),
             contact=self.contact.value(),
             n_particles=self.particles.value(),
-            shapes=self.shapes.currentData(),
-            cohesion=self.cohesion.currentData(),
+            shapes=self.shapes.value(),
+            cohesion=self.cohesion.value(),
             seed=self.seed.value(),
             drum=DrumRotation(**self.drum.value()) if self.in_drum else None,
         )
-        chosen = self.filling.currentData()
+        chosen = self.filling.value()
         return ReposeRequest(
             case,
             engine.key,
@@ -357,7 +352,7 @@ class SetupPanel(QWidget):
     @property
     def in_drum(self) -> bool:
         """Whether the cylinder turns on its side."""
-        return bool(self.apparatus.currentData() == "drum")
+        return bool(self.apparatus.value() == "drum")
 
     def measured_angle(self) -> tuple[float, float] | None:
         """The user's own dynamic angle and its standard error in degrees, if one was entered."""
@@ -385,12 +380,7 @@ class SetupPanel(QWidget):
     def state(self) -> dict[str, Any]:
         """The values as plain JSON."""
         return {
-            "particles": self.particles.value(),
-            "seed": self.seed.value(),
-            "shapes": self.shapes.currentData(),
-            "cohesion": self.cohesion.currentData(),
-            "engine": self.engine.currentData(),
-            "apparatus": self.apparatus.currentData(),
+            **field_values(self._fields),
             "drum": self.drum.value(),
             "measured": [self.measured.value(), self.measured_error.value()],
             "test": self.test.changes(),
@@ -403,7 +393,7 @@ class SetupPanel(QWidget):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Show what :meth:`state` returned; invalid values are ignored."""
-        self._select(self.apparatus, state, "apparatus")  # first: it changes values of the test
+        self.apparatus.choose(state.get("apparatus"))  # first: it changes values of the test
         try:
             self.test.restore(state.get("test", {}))
             self.drum.setValue(state.get("drum", {}))
@@ -414,21 +404,14 @@ class SetupPanel(QWidget):
             self.contact.restore(state.get("contact", {}))
             self.evaluation.setValue(state.get("evaluation", {}))
             self._limit_particles()
-            self.particles.setValue(int(state.get("particles", self.particles.value())))
-            self.seed.setValue(int(state.get("seed", 0)))
             for key, form in self._numerics.items():
                 form.setValue(state.get("numerics", {}).get(key, {}))
         except (InputError, TypeError, ValueError, AttributeError):
             return
-        for box, name in ((self.shapes, "shapes"), (self.cohesion, "cohesion"), (self.engine, "engine")):
-            self._select(box, state, name)
+        enter_values(self._fields, state)
         folder = state.get("dataset")
         if folder and Path(str(folder)).is_dir():
             self.set_dataset(Path(str(folder)), state.get("dataset_by_hand") is True)
-
-    @staticmethod
-    def _select(box: QComboBox, state: Mapping[str, Any], name: str) -> None:
-        box.setCurrentIndex(max(0, box.findData(state.get(name, box.currentData()))))
 
     def _place(self) -> None:
         presets = [
@@ -498,21 +481,9 @@ class SetupPanel(QWidget):
             self.updateGeometry()
 
     def _connect(self) -> None:
-        self.open_button.clicked.connect(self.datasetWanted)
-        self.sample_button.clicked.connect(self.sampleWanted)
-        for signal in (
-            self.particles.valueChanged,
-            self.seed.valueChanged,
-            self.shapes.currentIndexChanged,
-            self.cohesion.currentIndexChanged,
-            self.engine.currentIndexChanged,
-            self.filling.currentIndexChanged,
-            self.test.valueChanged,
-            self.drum.valueChanged,
-            self.contact.valueChanged,
-            *(each.valueChanged for each in self._numerics.values()),
-        ):
-            signal.connect(lambda *_: self.valueChanged.emit())
+        on_change((*self._fields.values(), self.filling), self.valueChanged.emit)
+        for form in (self.test, self.drum, self.contact, *self._numerics.values()):
+            form.valueChanged.connect(lambda _: self.valueChanged.emit())
         self.evaluation.valueChanged.connect(lambda *_: self.evaluationChanged.emit())
         self.evaluationChanged.connect(self._limit_particles)
         self._limit_particles()
@@ -533,7 +504,7 @@ class SetupPanel(QWidget):
 
     def _show_numerics(self) -> None:
         for key, form in self._numerics.items():
-            form.setVisible(key == self.engine.currentData())
+            form.setVisible(key == self.engine.value())
 
     def _take_apparatus(self) -> None:
         """Take the usual values of the apparatus for those of the other, and an engine that has it."""
@@ -541,34 +512,23 @@ class SetupPanel(QWidget):
         values = vars(self.test.value())
         pairs = {name: pair if self.in_drum else pair[::-1] for name, pair in OF_DRUM.items()}
         self.test.restore(values | {name: new for name, (new, old) in pairs.items() if values[name] == old})
-        if self.in_drum and not engine_named(self.engine.currentData()).capabilities.drum:
+        if self.in_drum and not engine_named(self.engine.value()).capabilities.drum:
             able = next(key for key, engine in ENGINES.items() if engine.capabilities.drum)
-            self.engine.setCurrentIndex(self.engine.findData(able))
+            self.engine.choose(able)
         self.valueChanged.emit()
 
     def _take_gravity(self) -> None:
-        if text := self.gravity.currentData():
-            changed = self.test.value()
-            self.test.restore({**vars(changed), "gravity": float(text)})
+        if gravity := self.gravity.value():
+            self.test.restore({**vars(self.test.value()), "gravity": gravity})
             self.valueChanged.emit()
 
     def _show_gravity(self) -> None:
         now = self.test.value().gravity
-        names = list(GRAVITIES.values())
-        with QSignalBlocker(self.gravity):
-            self.gravity.setCurrentIndex(names.index(now) if now in names else len(names))
+        self.gravity.setValue(now if now in GRAVITIES.values() else 0.0)
 
 
 def _button(text: str, name: str, tip: str) -> QPushButton:
     return named(QPushButton(text), name, tip, tip=tip)
-
-
-def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
-    box = named(ElidedComboBox(), name, spoken)
-    box.setMinimumContentsLength(max(10, len(tr(next(iter(entries))))))
-    for text, data in entries.items():
-        box.addItem(tr(text), data)
-    return box
 
 
 def _column(*parts: QWidget | QLayout) -> QVBoxLayout:

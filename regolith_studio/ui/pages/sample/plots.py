@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPixmap, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
-    QComboBox,
     QFileDialog,
     QHeaderView,
     QLabel,
@@ -41,7 +40,8 @@ from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, RunController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
-from regolith_studio.ui.widgets.fields import ElidedComboBox, choice
+from regolith_studio.ui.widgets.fields import ChoiceBox, choice
+from regolith_studio.ui.widgets.forms import enter_values, field_values, on_change
 from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -67,6 +67,8 @@ class ScatterPanel(QWidget):
         self._corners: dict[tuple[int, int], pg.TextItem] = {}
         self.across = _descriptor_box("scatter_x", tr("Horizontal axis"))
         self.up = _descriptor_box("scatter_y", tr("Vertical axis"))
+        for box in (self.across, self.up):
+            box.setMinimumContentsLength(max(len(tr(CATALOGUE[key].label)) for key in ZINGG))
         self.log = named(QCheckBox(tr("Logarithmic")), "scatter_log")
         self.zingg = QToolButton()
         self.zingg.setObjectName("scatter_zingg")
@@ -77,12 +79,11 @@ class ScatterPanel(QWidget):
         self.set_axes(*ZINGG)
 
     def axes(self) -> tuple[str, str]:
-        return str(self.across.currentData()), str(self.up.currentData())
+        return self.across.value(), self.up.value()
 
     def set_axes(self, x: str, y: str) -> None:
         for box, key in ((self.across, x), (self.up, y)):
-            with QSignalBlocker(box):
-                box.setCurrentIndex(max(0, box.findData(key)))
+            box.setValue(key)
         if self.axes() == ZINGG:
             self.log.setChecked(False)
         self._draw()
@@ -103,9 +104,7 @@ class ScatterPanel(QWidget):
             (self.plot, 1),
             parent=self,
         )
-        for box in (self.across, self.up):
-            box.currentIndexChanged.connect(lambda _at: self._draw())
-        self.log.toggled.connect(lambda _on: self._draw())
+        on_change((self.across, self.up, self.log), self._draw)
         self.zingg.clicked.connect(lambda: self.set_axes(*ZINGG))
         self.plot.canvas.getViewBox().sigResized.connect(self._place_zingg)
 
@@ -196,13 +195,11 @@ class ScatterPanel(QWidget):
             self.pointChosen.emit(str(points[0].data()), adding)
 
 
-def _descriptor_box(name: str, accessible: str) -> QComboBox:
-    box = named(ElidedComboBox(), name, accessible)
-    box.setMinimumContentsLength(max(len(tr(CATALOGUE[key].label)) for key in ZINGG))
-    for key, row in CATALOGUE.items():
-        if not row.costly:
-            box.addItem(tr(row.label), key)
-            box.setItemData(box.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
+def _descriptor_box(name: str, spoken: str) -> ChoiceBox:
+    labels = {key: row.label for key, row in CATALOGUE.items() if not row.costly}
+    box = ChoiceBox(name, spoken, labels, capital=False)
+    for place, key in enumerate(labels):
+        box.setItemData(place, definition(key), Qt.ItemDataRole.ToolTipRole)
     return box
 
 
@@ -242,11 +239,8 @@ class StatisticsPanel(QWidget):
         self.plot = CurvePlot(
             "", tr("Share [%]"), tr("The distribution appears when particles are measured.")
         )
-        self.key = choice("statistics_key", tr("Descriptor of the statistics"), ())
-        for key, row in CATALOGUE.items():
-            if not row.costly:
-                self.key.addItem(tr(row.label), key)
-                self.key.setItemData(self.key.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
+        self.key = _descriptor_box("statistics_key", tr("Descriptor of the statistics"))
+        self.key.prefers_whole = True
         weightings = {key: _WEIGHTING_LABELS[key] for key in WEIGHTINGS}
         self.weighting = choice("statistics_weighting", tr("Weighting of the statistics"), weightings)
         self.border = QCheckBox(tr("correct for border grains"))
@@ -275,9 +269,8 @@ class StatisticsPanel(QWidget):
             parent=self.distribution,
             margins=(8, 6, 8, 0),
         )
-        self.key.currentIndexChanged.connect(lambda _at: self._fill())
-        self.weighting.currentIndexChanged.connect(lambda _at: self._fill())
-        self.border.toggled.connect(lambda _on: self._fill())
+        self._fields = {"key": self.key, "weighting": self.weighting, "border": self.border}
+        on_change(self._fields.values(), self._fill)
 
     def show_entries(self, entries: Sequence[ParticleEntry]) -> None:
         self._entries = tuple(entries)
@@ -286,18 +279,11 @@ class StatisticsPanel(QWidget):
 
     def choices(self) -> dict[str, Any]:
         """Descriptor, weighting, and whether grains at the border are corrected for, as plain JSON."""
-        return {
-            "key": self.key.currentData(),
-            "weighting": self.weighting.currentData(),
-            "border": self.border.isChecked(),
-        }
+        return field_values(self._fields)
 
     def choose(self, choices: Mapping[str, Any]) -> None:
         """Take other :meth:`choices`; unknown ones are ignored."""
-        for name, box in (("key", self.key), ("weighting", self.weighting)):
-            if (place := box.findData(choices.get(name))) >= 0:
-                box.setCurrentIndex(place)
-        self.border.setChecked(bool(choices.get("border", self.border.isChecked())))
+        enter_values(self._fields, choices)
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         self._fill()
@@ -316,7 +302,7 @@ class StatisticsPanel(QWidget):
         outline = np.concatenate([[0.0], np.repeat(100 * shares, 2), [0.0]]).tolist()
         cumulated = 100 * np.cumsum(spread.weights)
         steps = np.concatenate([[0.0], np.repeat(cumulated, 2)[:-1]]).tolist()
-        self.plot.set_labels(_axis_label(str(self.key.currentData())), tr("Share [%]"))
+        self.plot.set_labels(_axis_label(self.key.value()), tr("Share [%]"))
         self.plot.set_curves(
             [
                 PlotCurve(
@@ -340,7 +326,7 @@ class StatisticsPanel(QWidget):
             return ResultRecord(
                 (), made_from if waiting else "", state=state if waiting else ResultState.NONE
             )
-        unit = CATALOGUE[str(self.key.currentData())].unit_suffix
+        unit = CATALOGUE[self.key.value()].unit_suffix
         values = tuple(short_number(each) for each in (spread.mean, float(spread.quantile(0.5))))
         for place, caption in enumerate((tr("Mean"), tr("Median"))):
             self.card.caption(place, caption + unit)
@@ -395,7 +381,8 @@ class MatchPanel(QWidget):
             self.card.caption(place, caption, tr(NOISE))
         spoken = tr("Materials that are compared with the sample")
         self.candidates = named(QListWidget(), "match_candidates", spoken)
-        self.cards = named(ElidedComboBox(), "match_cards", tr("Add a material card"))
+        labels = {"": N_("Add a card")} | {name: card.label for name, card in materials().items()}
+        self.cards = ChoiceBox("match_cards", tr("Add a material card"), labels, capital=False)
         spoken = tr("Length unit of files without one")
         units = {key: LABELS[key] for key in UNITS if key != "voxel"}
         self.unit = choice("match_unit", spoken, units)
@@ -436,7 +423,7 @@ class MatchPanel(QWidget):
     def start(self) -> None:
         """Compare the open sample with the candidates."""
         sample = tuple(self._context.session.open_particles)
-        request = MatchRequest(str(self.unit.currentData()))
+        request = MatchRequest(self.unit.value())
         self.run.start(tr("Match"), Job(draw_match, (sample, self.names(), request)), self._show)
 
     def save(self) -> None:
@@ -478,9 +465,6 @@ class MatchPanel(QWidget):
             self.picture.setPixmap(self._picture.scaled(self.picture.size(), *modes))
 
     def _place(self) -> None:
-        self.cards.addItem(tr("Add a card"), "")
-        for name, card in materials().items():
-            self.cards.addItem(tr(card.label), name)
         self.cards.activated.connect(self._add_card)
         buttons = []
         for name, text, act in (

@@ -131,16 +131,15 @@ class SegmentationControls(QWidget):
 
     def set_level(self, level: float) -> None:
         """Set a manual threshold: a grey value, or for a probability map its share."""
-        method = self.threshold.currentData()
+        method = self.threshold.value()
         method = method if method in ("probability", "classifier") else "manual"
-        with QSignalBlocker(self.threshold):
-            self.threshold.setCurrentIndex(self.threshold.findData(method))
+        self.threshold.setValue(method)
         self._show_level(level)
         self._changed()
 
     def set_classifier(self, training: TrainingSet | None) -> None:
         """Offer a classifier as a threshold; if it is chosen already, the settings change."""
-        used = self.threshold.currentData() == "classifier"
+        used = self.threshold.value() == "classifier"
         self._set_classifier(training)
         if used:
             self._changed()
@@ -153,7 +152,7 @@ class SegmentationControls(QWidget):
 
     def use_classifier(self) -> None:
         """Choose the classifier as the threshold."""
-        self.threshold.setCurrentIndex(self.threshold.findData("classifier"))
+        self.threshold.choose("classifier")
 
     def _set_classifier(self, training: TrainingSet | None) -> None:
         self._classifier = training
@@ -165,7 +164,7 @@ class SegmentationControls(QWidget):
                 self.threshold.setCurrentIndex(0)
 
     def show_automatic_level(self, level: float | None) -> None:
-        if level is not None and self.threshold.currentData() in ("otsu", "multi-otsu"):
+        if level is not None and self.threshold.value() in ("otsu", "multi-otsu"):
             self._show_level(level)
 
     def show_heights(self, found: Sequence[GrainsAtHeight]) -> None:
@@ -193,7 +192,7 @@ class SegmentationControls(QWidget):
             self.level.setValue(level)
 
     def _show_which(self) -> None:
-        method = self.threshold.currentData()
+        method = self.threshold.value()
         was_probable = self.level.maximum() < 1.0
         with QSignalBlocker(self.level):
             self.level.setRange(*((0.01, 0.99) if method in _PROBABLE else (-1e9, 1e9)))
@@ -266,12 +265,6 @@ _DENSEST, _LARGEST = 0.7, 0.4
 class WorkflowPanel(QWidget):
     """A button for each step, enabled when its input is available."""
 
-    openRequested = Signal()  # noqa: N815
-    sampleRequested = Signal()  # noqa: N815
-    labelsRequested = Signal()  # noqa: N815
-    particlesRequested = Signal()  # noqa: N815
-    showRequested = Signal()  # noqa: N815
-
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("scan_steps")
@@ -314,11 +307,6 @@ class WorkflowPanel(QWidget):
             else:
                 layout.addLayout(row)
                 layout.addWidget(result)
-        self.browse.clicked.connect(self.openRequested)
-        self.sample.clicked.connect(self.sampleRequested)
-        self.save.clicked.connect(self.labelsRequested)
-        self.convert.clicked.connect(self.particlesRequested)
-        self.show_them.clicked.connect(self.showRequested)
 
     def show_state(
         self,

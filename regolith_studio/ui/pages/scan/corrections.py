@@ -69,11 +69,11 @@ class Painting(QObject):
         self._volume: Volume | None = None
         self._vectors: Vectors = {}
         self.training: TrainingSet | None = None
-        panel.paintingChanged.connect(self._set_painting)
-        panel.overlayChanged.connect(slices.set_overlay)
+        panel.paint.toggled.connect(self._set_painting)
+        panel.overlay.currentIndexChanged.connect(lambda: slices.set_overlay(panel.overlay.value()))
         panel.featuresChanged.connect(self._retrain)
-        panel.undoRequested.connect(self.undo)
-        panel.clearRequested.connect(lambda: self._push(()))
+        panel.undo.clicked.connect(self.undo)
+        panel.clear.clicked.connect(lambda: self._push(()))
         slices.strokeDrawn.connect(self._add)
         slices.moved.connect(self._predict)
 
@@ -393,7 +393,7 @@ class Corrections(QObject):
         place = (x, y, z)
         if self._objects.mark.isChecked():
             if self._base.segmentation.labels.array[place] > 0:
-                kind = int(self._objects.kind.currentData())
+                kind = self._objects.kind.value()
                 others = tuple(each for each in self.state.examples if not self._same_object(each[0], place))
                 self._push(replace(self.state, examples=(*others, (place, kind))))
         elif (needed := _CLICKS.get(self._edits.tool)) is not None and self.grains is not None:
@@ -521,15 +521,16 @@ class Corrections(QObject):
     def _connect(self) -> None:
         self._slices.picked.connect(self._on_click)
         self._slices.strokeDrawn.connect(self._on_line)
-        self._objects.markingChanged.connect(self._set_marking)
-        self._objects.actionsChanged.connect(
-            lambda: self._push(replace(self.state, actions=self._objects.action_of_each()))
-        )
-        self._objects.applyChanged.connect(lambda on: self._push(replace(self.state, applied=on)))
-        self._objects.clearRequested.connect(
+        self._objects.mark.toggled.connect(self._set_marking)
+        for box in self._objects.action_boxes:
+            box.currentIndexChanged.connect(
+                lambda: self._push(replace(self.state, actions=self._objects.action_of_each()))
+            )
+        self._objects.apply.toggled.connect(lambda on: self._push(replace(self.state, applied=on)))
+        self._objects.clear.clicked.connect(
             lambda: self._push(replace(self.state, examples=(), loaded=None, applied=False))
         )
         for panel in (self._objects, self._edits):
-            panel.undoRequested.connect(self.undo)
-        self._edits.redoRequested.connect(self.redo)
+            panel.undo.clicked.connect(self.undo)
+        self._edits.redo.clicked.connect(self.redo)
         self._edits.toolChanged.connect(self._set_tool)

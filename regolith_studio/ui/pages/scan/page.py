@@ -456,17 +456,17 @@ class ScanPage(PageWidget):
         self._connect_buttons()
 
     def _connect_buttons(self) -> None:
-        self.brush.useRequested.connect(self.controls.use_classifier)
-        self.brush.labelsRequested.connect(self.files.read_labels)
-        self.brush.openRequested.connect(self.files.open_classifier)
-        self.brush.saveRequested.connect(self.files.save_classifier)
-        self.objects.openRequested.connect(self.files.open_objects)
-        self.objects.saveRequested.connect(self.files.save_objects)
-        self.workflow.openRequested.connect(self.opening.ask_for_file)
-        self.workflow.sampleRequested.connect(self.opening.open_sample)
-        self.workflow.labelsRequested.connect(self.save_labels)
-        self.workflow.particlesRequested.connect(self.make_particles)
-        self.workflow.showRequested.connect(lambda: self._context.go("sample"))
+        self.brush.use.clicked.connect(self.controls.use_classifier)
+        self.brush.labels.clicked.connect(self.files.read_labels)
+        self.brush.browse.clicked.connect(self.files.open_classifier)
+        self.brush.save.clicked.connect(self.files.save_classifier)
+        self.objects.browse.clicked.connect(self.files.open_objects)
+        self.objects.save.clicked.connect(self.files.save_objects)
+        self.workflow.browse.clicked.connect(self.opening.ask_for_file)
+        self.workflow.sample.clicked.connect(self.opening.open_sample)
+        self.workflow.save.clicked.connect(self.save_labels)
+        self.workflow.convert.clicked.connect(self.make_particles)
+        self.workflow.show_them.clicked.connect(lambda: self._context.go("sample"))
 
     def _stop_tools(self) -> None:
         """Let clicks show slices again when another tab is chosen."""

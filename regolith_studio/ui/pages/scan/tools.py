@@ -69,11 +69,6 @@ class Brush:
 class TrainingPanel(QWidget):
     """The buttons of a classifier that is trained by examples, and what it lacks."""
 
-    undoRequested = Signal()  # noqa: N815
-    clearRequested = Signal()  # noqa: N815
-    openRequested = Signal()  # noqa: N815
-    saveRequested = Signal()  # noqa: N815
-
     def __init__(self, name: str, undo: tuple[str, str], tips: tuple[str, str, str]) -> None:
         super().__init__()
         self.setObjectName(name)
@@ -85,10 +80,6 @@ class TrainingPanel(QWidget):
             )
         )
         self.state = hint_label()
-        self.undo.clicked.connect(self.undoRequested)
-        self.clear.clicked.connect(self.clearRequested)
-        self.browse.clicked.connect(self.openRequested)
-        self.save.clicked.connect(self.saveRequested)
 
     def show_missing(self, words: str) -> None:
         """Say what is missing for a classifier, or nothing."""
@@ -97,13 +88,9 @@ class TrainingPanel(QWidget):
 
 
 class BrushPanel(TrainingPanel):
-    """Chooses the brush and the overlay. ``paintingChanged`` is emitted when painting begins or ends."""
+    """Chooses the brush and the overlay."""
 
-    paintingChanged = Signal(bool)  # noqa: N815
-    overlayChanged = Signal(str)  # noqa: N815
     featuresChanged = Signal()  # noqa: N815
-    useRequested = Signal()  # noqa: N815
-    labelsRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__(
@@ -159,7 +146,7 @@ class BrushPanel(TrainingPanel):
 
     @property
     def brush(self) -> Brush:
-        label = ERASER if self.eraser.isChecked() else int(self.kind.currentData())
+        label = ERASER if self.eraser.isChecked() else self.kind.value()
         return Brush(label, float(self.diameter.value()))
 
     @property
@@ -198,13 +185,9 @@ class BrushPanel(TrainingPanel):
 
     def _connect(self) -> None:
         self.paint.toggled.connect(lambda _: self._enable())
-        self.paint.toggled.connect(self.paintingChanged)
-        self.overlay.currentIndexChanged.connect(lambda: self.overlayChanged.emit(self.overlay.currentData()))
         self.sigmas.editingFinished.connect(self._take_features)
         self.planar.toggled.connect(self._take_features)
         self.kind.currentIndexChanged.connect(lambda: self.eraser.setChecked(False))
-        self.use.clicked.connect(self.useRequested)
-        self.labels.clicked.connect(self.labelsRequested)
 
     def _arrange(self) -> None:
         vbox(
@@ -237,11 +220,7 @@ _ACTION_NAMES = (N_("Keep"), N_("Split again"), N_("Drop"))
 
 
 class ObjectsPanel(TrainingPanel):
-    """Chooses the class of a click and the actions. ``markingChanged`` tells when clicks begin to mark."""
-
-    markingChanged = Signal(bool)  # noqa: N815
-    actionsChanged = Signal()  # noqa: N815
-    applyChanged = Signal(bool)  # noqa: N815
+    """Chooses the class of a click and the actions."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -274,18 +253,17 @@ class ObjectsPanel(TrainingPanel):
         self.apply.setObjectName("objects_apply")
         self.apply.setToolTip(tr("Keep, split or drop the grains by their class"))
         self._arrange()
-        self._connect()
+        self.mark.toggled.connect(self.kind.setEnabled)
         self.set_state(found=False, trained=False, applied=False, can_undo=False)
         self.set_counts({}, "")
 
     def action_of_each(self) -> tuple[ObjectAction, ...]:
-        return tuple(box.currentData() for box in self.action_boxes)
+        return tuple(box.value() for box in self.action_boxes)
 
     def set_actions(self, actions: tuple[ObjectAction, ...]) -> None:
         """Show other actions without emitting a signal."""
         for box, action in zip(self.action_boxes, actions, strict=True):
-            with QSignalBlocker(box):
-                box.setCurrentIndex(box.findData(action))
+            box.setValue(action)
 
     def set_state(self, *, found: bool, trained: bool, applied: bool, can_undo: bool) -> None:
         """Enable what can be done; `found` says whether there are grains."""
@@ -304,13 +282,6 @@ class ObjectsPanel(TrainingPanel):
             count = counts.get(name)
             label.setText(tr(words) if count is None else f"{tr(words)}: {count}")
         self.show_missing(missing)
-
-    def _connect(self) -> None:
-        self.mark.toggled.connect(self.kind.setEnabled)
-        self.mark.toggled.connect(self.markingChanged)
-        self.apply.toggled.connect(self.applyChanged)
-        for box in self.action_boxes:
-            box.currentIndexChanged.connect(self.actionsChanged)
 
     def _arrange(self) -> None:
         form = QFormLayout()
@@ -405,8 +376,6 @@ class EditsPanel(QWidget):
     """Chooses the tool; ``toolChanged`` tells its kind."""
 
     toolChanged = Signal(str)  # noqa: N815
-    undoRequested = Signal()  # noqa: N815
-    redoRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
@@ -430,8 +399,6 @@ class EditsPanel(QWidget):
         self._arrange()
         for made in self.tools.values():
             made.toggled.connect(self._chosen)
-        self.undo.clicked.connect(self.undoRequested)
-        self.redo.clicked.connect(self.redoRequested)
         self.set_state(found=False, can_undo=False, can_redo=False)
         self._chosen(True)
 

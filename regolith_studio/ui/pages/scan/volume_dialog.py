@@ -102,17 +102,15 @@ class VolumeDialog(QDialog):
         raw = None
         if self._header is None:
             x, y, z = (field.value() for field in self.shape)
-            raw = RawLayout(
-                (x, y, z), self.dtype.currentData(), self.order.currentData(), self.offset.value()
-            )
+            raw = RawLayout((x, y, z), self.dtype.value(), self.order.value(), self.offset.value())
         return VolumeInput(
             self._path,
             tuple(field.value() for field in self.edges),
-            self.unit.currentData(),
-            self.kind.currentData(),
-            self.dataset.currentData(),
+            self.unit.value(),
+            self.kind.value(),
+            self.dataset.value(),
             raw,
-            self.axes.currentData(),
+            self.axes.value(),
             allow_gaps=self.allow_gaps.isChecked(),
         )
 
@@ -128,21 +126,21 @@ class VolumeDialog(QDialog):
         size, unit = self._last_size
         for field in self.edges:
             field.setValue(size)
-        self.unit.setCurrentIndex(max(0, self.unit.findData(unit)))
+        self.unit.choose(unit)
         if header is None:
             self._suggest_layout(self._layout)
             return
         if header.voxel_size is not None:
             for field, edge in zip(self.edges, header.voxel_size, strict=True):
                 field.setValue(edge)
-            self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
+            self.unit.choose(header.unit or "um")
         appearance = tr("labels of grains") if header.kind == "labels" else tr("grey values")
         self.kind.setItemText(0, tr("Detected: {looks}", looks=appearance))
         for entry in header.datasets:
             self.dataset.addItem(
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name
             )
-        self.dataset.setCurrentIndex(max(0, self.dataset.findData(header.dataset)))
+        self.dataset.choose(header.dataset)
         self.dataset.currentIndexChanged.connect(self._show_edges)
 
     def _show_edges(self, index: int) -> None:
@@ -160,14 +158,14 @@ class VolumeDialog(QDialog):
             self._said = tr("The number of voxels in its name agrees with its size.")
         for count, edge in zip(self.shape, layout.shape, strict=True):
             count.setValue(edge)
-        self.dtype.setCurrentIndex(max(0, self.dtype.findData(layout.dtype)))
-        self.order.setCurrentIndex(max(0, self.order.findData(layout.byte_order)))
+        self.dtype.choose(layout.dtype)
+        self.order.choose(layout.byte_order)
         self.offset.setValue(layout.offset)
 
     def _check_size(self, _changed: int = 0) -> None:
         """Show whether the size of the file fits the layout, and enable opening if it does."""
         voxels = math.prod(field.value() for field in self.shape)
-        needed = voxels * np.dtype(str(self.dtype.currentData())).itemsize + self.offset.value()
+        needed = voxels * np.dtype(str(self.dtype.value())).itemsize + self.offset.value()
         there = self._path.stat().st_size
         if needed == there:
             words = tr("That is all of the file's {count:,} bytes.", count=there)
@@ -180,7 +178,7 @@ class VolumeDialog(QDialog):
 
     def _check_gaps(self) -> None:
         """Enable opening if the chosen series is complete, or its absent slices are to be empty."""
-        chosen = self.dataset.currentData() or next(iter(self._gaps))
+        chosen = self.dataset.value() or next(iter(self._gaps))
         numbers = self._gaps.get(chosen, "")
         self.allow_gaps.setText(inert(tr("Read absent slices as empty: {numbers}", numbers=numbers)))
         self.allow_gaps.setVisible(bool(numbers))

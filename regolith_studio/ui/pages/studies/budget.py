@@ -69,7 +69,7 @@ class BudgetPanel(QWidget):
         context.bindings.refresh("particles choices", self._mark_outdated, slow=True)
 
     def _configure(self) -> None:
-        self.points.setCurrentIndex(self.points.findData(UncertaintyRequest.base))
+        self.points.choose(UncertaintyRequest.base)
         self.heaps.setRange(0, MAX_HEAPS)
         self.heaps.setSpecialValueText(tr("none"))
         self.heaps.setToolTip(tr("Simulated heaps; without them the budget is of descriptors alone."))
@@ -85,10 +85,10 @@ class BudgetPanel(QWidget):
 
         Not the folder: a project that is opened must not name where files are written.
         """
-        return {"points": self.points.currentData(), "heaps": self.heaps.value()}
+        return {"points": self.points.value(), "heaps": self.heaps.value()}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        self.points.setCurrentIndex(max(0, self.points.findData(value.get("points"))))
+        self.points.choose(value.get("points"))
         if isinstance(heaps := value.get("heaps"), int):
             self.heaps.setValue(min(max(heaps, 0), MAX_HEAPS))
 
@@ -105,7 +105,7 @@ class BudgetPanel(QWidget):
         chain = Chain.of(
             self._session.open_particles, coarsening=choices.coarsening_request, seed=choices.seed
         )
-        request = UncertaintyRequest(self.points.currentData(), self.heaps.value())
+        request = UncertaintyRequest(self.points.value(), self.heaps.value())
         self._budget, self._made = None, self._asked()
         job = Job(uncertainty_steps, (chain, request, Path(folder)), {"resume": True})
         self.run.start(tr("Budget of uncertainty"), job, self._show, note=folder)
@@ -136,7 +136,7 @@ class BudgetPanel(QWidget):
             self.card.show_record(ResultRecord(now.values, now.made_from, now.made_with, state, now.note))
 
     def _record(self, budget: UncertaintyBudget) -> ResultRecord:
-        number, found, recipe = int(self.quantity.currentData()), budget.descriptors, budget.recipe
+        number, found, recipe = self.quantity.value(), budget.descriptors, budget.recipe
         value, ends, unit = float("nan"), (float("nan"),) * 2, " [°]"
         if number < ANGLE:
             value, ends = found.nominal[number], tuple(found.intervals[number])
@@ -159,7 +159,7 @@ class BudgetPanel(QWidget):
         return ResultRecord(values, made_from, ", ".join(made_with), note=self._folder)
 
     def _show_table(self) -> None:
-        number, budget = int(self.quantity.currentData()), self._budget
+        number, budget = self.quantity.value(), self._budget
         self.table.rows.setHorizontalHeaderLabels(list(map(tr, SHARES if number < ANGLE else CHANGES)))
         rows: list[Row] = []
         if budget is not None:

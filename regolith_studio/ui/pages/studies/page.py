@@ -194,8 +194,7 @@ class StudiesPage(PageWidget):
             self.bar.set_names(rows)
         if isinstance(state.get("budget"), Mapping):
             self.budget.setValue(state["budget"])
-        if self.bar.box.findData(state.get("box")) >= 0:
-            self.bar.box.setValue(str(state["box"]))
+        self.bar.box.setValue(state.get("box"))
         for key, text in values.items() if isinstance(values, dict) else ():
             if key in self.variations and isinstance(text, str):
                 self.variations[key].values.setValue(text)
