@@ -347,15 +347,12 @@ class Commands(QObject):
             dataset_request=dataset_request,
             unread=self._session.unread,
         )
-        try:
+        with self._toast.reporting():
             recipe, models = session_recipe.files_for(Path(name))
             write_files({**models, Path(name): recipe.to_json().encode("utf-8")})
-        except RegolithError as error:
-            self._toast.problem(str(error))
-            return
-        command = f"regolith-studio run {Path(name).name}"
-        note = tr("Saved {name}; run it with: {command}", name=name, command=command)
-        self._toast.note(" ".join((note, *without(session_recipe, self._session.unread))))
+            command = f"regolith-studio run {Path(name).name}"
+            note = tr("Saved {name}; run it with: {command}", name=name, command=command)
+            self._toast.note(" ".join((note, *without(session_recipe, self._session.unread))))
 
     def copy_command(self) -> None:
         """Put the command line that does the same onto the clipboard."""

@@ -381,18 +381,15 @@ class ProjectFiles(QObject):
         with suppress(OSError):  # which the saving tells
             path.parent.mkdir(parents=True, exist_ok=True)
         self._lock.take()  # first: a file without a lock is one that a crash has left
-        try:
+        with self._toast.reporting():
             copy = self._state().model_copy(update={"file": str(self.path or "")})
             copy.save(path, self._session_recipe().model)
-        except RegolithError as error:
-            self._toast.problem(str(error))
-            return
-        if not self._recovered:
-            return
-        if self._session.tasks:
-            self._changed = True
-        else:  # what was brought back has been read, and is in this copy
-            self._forget_recovered()
+            if not self._recovered:
+                return
+            if self._session.tasks:
+                self._changed = True
+            else:  # what was brought back has been read, and is in this copy
+                self._forget_recovered()
 
 
 def _digest(path: Path) -> str:

@@ -1,6 +1,7 @@
 """Messages at the lower edge of the window that disappear after some seconds."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
@@ -15,6 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.errors import RegolithError
 from regolith_studio.readers.particles import FileProblem
 from regolith_studio.ui.layout import dialog_buttons, hbox, named
 from regolith_studio.ui.translation import inert, tr, translate
@@ -62,6 +64,14 @@ class Toast(QFrame):
 
     def problem(self, sentence: str, details: str = "") -> None:
         self._show_message("problem", translate(sentence), details, PROBLEM_SECONDS)
+
+    @contextmanager
+    def reporting(self) -> Iterator[None]:
+        """Report what is refused in a ``with`` statement, which ends there."""
+        try:
+            yield
+        except RegolithError as error:
+            self.problem(str(error))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and self.isVisible():

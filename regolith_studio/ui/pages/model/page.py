@@ -68,12 +68,9 @@ def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeS
     if not name:
         return
     path = _json_path(name)
-    try:
+    with toast.reporting():
         write_model(path, model, {"source": source.name, "sha256": source.sha256 or None})
-    except RegolithError as error:
-        toast.problem(str(error))
-        return
-    toast.note(tr("Saved {name}.", name=path.name))
+        toast.note(tr("Saved {name}.", name=path.name))
 
 
 def save_card(parent: QWidget, context: PageContext, sample: Sample, source: ShapeSource) -> None:
@@ -605,10 +602,8 @@ class ModelPage(PageWidget):
         self._show_source()
 
     def _try(self, action: Callable[[], None]) -> None:
-        try:
+        with self._context.toast.reporting():
             action()
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
 
     def _place(self) -> None:
         shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]

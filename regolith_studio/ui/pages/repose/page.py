@@ -274,31 +274,28 @@ class ReposePage(PageWidget):
             note = tr("There is no dataset yet: open or build one first.")
             self._context.toast.problem(under_way or note)
             return
-        try:
+        with self._context.toast.reporting():
             request = self.setup.request()
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        self._later.stop()
-        self._live_scene = self._live_pile = None
-        note = (
-            tr("The angle is measured when the drum has turned.")
-            if request.case.drum
-            else tr("The angle is measured when the particles have come to rest.")
-        )
-        earlier = self.angle.record
-        self._show_nothing(note)
-        self.tabs.setCurrentIndex(0)
-        folder = new_folder(self._folder, f"{dataset.name}-{request.case.n_particles}")
-        self._start_preview(dataset, request)
-        self.run.start(
-            tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
-            Job(repose_steps, (dataset, folder, request)),
-            self._show_progress,
-            note,
-            self._end_run,
-            earlier,
-        )
+            self._later.stop()
+            self._live_scene = self._live_pile = None
+            note = (
+                tr("The angle is measured when the drum has turned.")
+                if request.case.drum
+                else tr("The angle is measured when the particles have come to rest.")
+            )
+            earlier = self.angle.record
+            self._show_nothing(note)
+            self.tabs.setCurrentIndex(0)
+            folder = new_folder(self._folder, f"{dataset.name}-{request.case.n_particles}")
+            self._start_preview(dataset, request)
+            self.run.start(
+                tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
+                Job(repose_steps, (dataset, folder, request)),
+                self._show_progress,
+                note,
+                self._end_run,
+                earlier,
+            )
 
     def open_positions(self) -> None:
         """Ask for a file of positions of another program and measure its pile."""
@@ -306,17 +303,14 @@ class ReposePage(PageWidget):
             self.open_path(path)
 
     def open_path(self, path: Path) -> None:
-        try:
+        with self._context.toast.reporting():
             read = read_pile(self, path)
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        if read is None:
-            return
-        heap, pile, notes = read
-        for note in notes:
-            self._context.toast.note(note)
-        self._show_imported(heap, pile)
+            if read is None:
+                return
+            heap, pile, notes = read
+            for note in notes:
+                self._context.toast.note(note)
+            self._show_imported(heap, pile)
 
     def _show_imported(self, heap: ImportedHeap, pile: ParticleState) -> None:
         name = Path(heap.file).name
@@ -534,12 +528,9 @@ class ReposePage(PageWidget):
     def _measure_again(self) -> None:
         if self._pile is None:
             return
-        try:
+        with self._context.toast.reporting():
             job = Job(remeasure, (self._pile, self.setup.evaluation_settings()))
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        self._context.start(tr("Measuring the heap"), job, self._show_measurement, queue=MEASURE)
+            self._context.start(tr("Measuring the heap"), job, self._show_measurement, queue=MEASURE)
 
     def _show_measurement(self, measured: ReposeMeasurement | NotAPileError) -> None:
         if self._pile is None:

@@ -23,7 +23,7 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.run_io import read_final_state
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.errors import FileError, RegolithError, format_validation_error
+from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.atomic import staged_folder
@@ -189,15 +189,12 @@ def export_measurement(
     name = FolderDialog.ask(parent, tr("Export figure and JSON"))
     if not name:
         return
-    try:
+    with toast.reporting():
         with staged_folder(Path(name), "repose") as stage:
             document = {"length_unit": "m"} | measurement_document(measured)
             (stage / "repose.json").write_bytes(json_bytes(document))
             write_section_figure(pile.points, pile.diameters, measured, stage)
-    except RegolithError as error:
-        toast.problem(str(error))
-        return
-    toast.note(tr("Figure and JSON are in {name}.", name=name))
+        toast.note(tr("Figure and JSON are in {name}.", name=name))
 
 
 LOW_SIDE = Direction("", (0.35, -1.0, 0.22), (0.0, 0.0, 1.0))

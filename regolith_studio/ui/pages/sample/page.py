@@ -310,12 +310,9 @@ class SamplePage(PageWidget):
         if not name:
             return
         entries = self.table.particles.rows
-        try:
+        with self._context.toast.reporting():
             write_bytes(Path(name), csv_text(sample_table(entries)).encode("utf-8"))
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        self._context.toast.note(tr("{count} particles are in {name}.", count=len(entries), name=name))
+            self._context.toast.note(tr("{count} particles are in {name}.", count=len(entries), name=name))
 
     def copy_table(self) -> None:
         """Copy the visible rows to the clipboard, separated by tabs."""

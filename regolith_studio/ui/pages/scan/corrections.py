@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QColor
 
-from regolith_studio.errors import InputError
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit, Voxel
 from regolith_studio.imaging.segmentation.object_classifier import (
     OBJECT_ACTIONS,
@@ -431,13 +430,10 @@ class Corrections(QObject):
 
     def _edit(self, kind: str, points: tuple[Voxel, ...], axis: int = 2, radius: float = 0.5) -> None:
         radius = radius if kind in BRUSHED else 0.5
-        try:
+        with self._context.toast.reporting():
             edit = LabelEdit(kind, points, axis, radius)  # type: ignore[arg-type]  # one of the tools
-        except InputError as error:
-            self._context.toast.problem(str(error))
-            return
-        self._push(replace(self.state, edits=(*self.state.edits, edit)))
-        self._repaired = edit
+            self._push(replace(self.state, edits=(*self.state.edits, edit)))
+            self._repaired = edit
 
     def _set_tool(self, kind: str) -> None:
         self._clicks = ()

@@ -207,12 +207,9 @@ class VolumeOpening(QObject):
             self.read(VolumeInput(path))
 
     def _ask_layout(self, path: Path) -> None:
-        try:
+        with self._context.toast.reporting():
             layout = layout_from_name(path)
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), parent=self._page))
+            self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), parent=self._page))
 
     def _show_dialog(self, dialog: VolumeDialog) -> None:
         dialog.accepted.connect(lambda: self._read_described(dialog.value()))
@@ -351,12 +348,9 @@ class SettingsFiles(QObject):
         path = ask_to_save(self._page, self._context, tr("Save settings"), "grains.json", tr(SETTINGS))
         if path is None:
             return
-        try:
+        with self._context.toast.reporting():
             write_bytes(path, json_bytes(settings.as_document()))
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
-            return
-        note_command(self._context, f"regolith-studio extract --recipe {path.name}")
+            note_command(self._context, f"regolith-studio extract --recipe {path.name}")
 
     def open_classifier(self) -> None:
         """Ask for the file of a classifier and take it as the threshold."""
@@ -385,10 +379,8 @@ class SettingsFiles(QObject):
         path = ask_to_open(self._page, self._context, title, kinds)
         if path is None:
             return
-        try:
+        with self._context.toast.reporting():
             use(read(path))
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
 
     def _use_classifier(self, training: TrainingSet) -> None:
         self._controls.set_classifier(training)

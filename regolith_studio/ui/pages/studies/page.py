@@ -224,10 +224,8 @@ class StudiesPage(PageWidget):
         if kind is Kind.COARSENING_STUDY:
             rows = chosen_rows(self.bar.names(), self._session.choices)
             options = {"rows": rows, "box_metric": self.bar.box.value()}
-        try:
+        with self._context.toast.reporting():
             self._session.start_study(kind, **options)
-        except RegolithError as error:
-            self._context.toast.problem(str(error))
 
     def draw_gallery(self) -> None:
         """Coarsen the current particle and those after it with each loss function."""
