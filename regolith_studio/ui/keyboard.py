@@ -8,14 +8,12 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QAction, QGuiApplication, QKeyEvent, QKeySequence, QWindow
 from PySide6.QtWidgets import (
     QAbstractButton,
-    QAbstractItemView,
     QAbstractSpinBox,
     QApplication,
     QDialog,
     QDialogButtonBox,
     QDoubleSpinBox,
     QFormLayout,
-    QHeaderView,
     QKeySequenceEdit,
     QLabel,
     QLineEdit,
@@ -25,8 +23,6 @@ from PySide6.QtWidgets import (
     QSpinBox,
     QTabBar,
     QTableView,
-    QTableWidget,
-    QTableWidgetItem,
     QWidget,
 )
 
@@ -36,6 +32,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.layout import dialog_buttons, hbox, named, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, hint_label
+from regolith_studio.ui.widgets.table import TextTable
 
 FOCUSED = "focused"
 """Property that the style sheet asks for; parts around a widget that have it are framed with it."""
@@ -298,16 +295,9 @@ class ShortcutsDialog(QDialog):
         self.search = named(QLineEdit(), "shortcuts_search", tr("Search commands"))
         self.search.setPlaceholderText(tr("Search commands and keys"))
         self.search.setClearButtonEnabled(True)
-        self.table = named(QTableWidget(0, 2), "shortcuts_table", tr("Commands and their keys"))
-        self.table.setHorizontalHeaderLabels([tr("Command"), tr("Keys")])
-        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.table.setTabKeyNavigation(False)
-        self.table.setShowGrid(False)
-        self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        self.table.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        headings = [tr("Command"), tr("Keys")]
+        self.table = TextTable("shortcuts_table", tr("Commands and their keys"), headings, numbers=False)
+        self._listed: list[str] = []
         self.editor = named(QKeySequenceEdit(), "shortcuts_keys", tr("New keys of the chosen command"))
         self.editor.setMaximumSequenceLength(1)
         self.editor.setClearButtonEnabled(True)
@@ -324,7 +314,7 @@ class ShortcutsDialog(QDialog):
         self.sentence = hint_label(role="warning")
         self._arrange()
         self.search.textChanged.connect(lambda _: self._fill())
-        self.table.itemSelectionChanged.connect(self._show_chosen)
+        self.table.chosen.connect(lambda _: self._show_chosen())
         self.change.clicked.connect(lambda: self._try(self.editor.keySequence().toString()))
         self.default.clicked.connect(lambda: self._try(self._shortcuts.defaults[self.chosen()]))
         self.all_defaults.clicked.connect(self._reset)
@@ -332,35 +322,26 @@ class ShortcutsDialog(QDialog):
 
     def chosen(self) -> str:
         """Name of the command that is chosen; empty for none."""
-        row = self.table.currentRow()
-        item = self.table.item(row, 0) if row >= 0 else None
-        return str(item.data(Qt.ItemDataRole.UserRole)) if item else ""
+        row = self.table.selected()
+        return "" if row is None else self._listed[row]
 
     def choose(self, name: str) -> None:
         """Choose a command by its name, if it is listed."""
-        for row in range(self.table.rowCount()):
-            item = self.table.item(row, 0)
-            if item is not None and item.data(Qt.ItemDataRole.UserRole) == name:
-                self.table.selectRow(row)
+        self.table.select(self._listed.index(name) if name in self._listed else None)
+        self._show_chosen()
 
     def _fill(self) -> None:
         name, words = self.chosen(), self.search.text().lower().split()
-        rows = []
-        for key, action in self._shortcuts.actions.items():
+        self._listed, rows, shortcuts = [], [], self._shortcuts
+        for key, action in shortcuts.actions.items():
             title = f"{self._titles[key]}: {plain(action)}" if self._titles.get(key) else plain(action)
-            keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+            keys = shown_keys(action.shortcut())
             if all(word in f"{title} {keys}".lower() for word in words):
-                rows.append(
-                    (key, title, keys, keys and self._shortcuts.defaults[key] != self._shortcuts.keys(key))
-                )
-        self.table.setRowCount(len(rows))
-        for row, (key, title, keys, own) in enumerate(rows):
-            item = QTableWidgetItem(title)
-            item.setData(Qt.ItemDataRole.UserRole, key)
-            self.table.setItem(row, 0, item)
-            self.table.setItem(row, 1, QTableWidgetItem(f"{keys} *" if own else keys))
+                own = keys and shortcuts.defaults[key] != shortcuts.keys(key)
+                self._listed.append(key)
+                rows.append((title, f"{keys} *" if own else keys))
+        self.table.set_rows(rows, [""] * len(rows))
         self.choose(name)
-        self._show_chosen()
 
     def _show_chosen(self) -> None:
         name = self.chosen()

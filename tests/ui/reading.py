@@ -106,10 +106,6 @@ def _cells(table):
         if item is not None:
             yield item.text()
             yield item.toolTip()
-    for row in range(table.rowCount()):
-        item = table.item(row, 0)
-        if item is not None and table.objectName() == "shortcuts_table":
-            yield item.text()
 
 
 def _plot_menu(plot):

@@ -86,7 +86,7 @@ def test_that_the_dialog_finds_changes_and_resets_by_keys_alone(shortcuts, shown
     dialog = shown(ShortcutsDialog(shortcuts, {"scan.find": "Scan"}))
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose, False)
     QTest.keyClicks(dialog.search, "scan")
-    assert dialog.table.rowCount() == 1
+    assert dialog.table.rows.rowCount() == 1
     dialog.choose("scan.find")
     QTest.keyClick(dialog.editor, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     dialog.change.click()
@@ -94,8 +94,8 @@ def test_that_the_dialog_finds_changes_and_resets_by_keys_alone(shortcuts, shown
     QTest.keyClick(dialog.editor, Qt.Key.Key_F7)
     dialog.change.click()
     assert shortcuts.keys("scan.find") == "F7"
-    assert dialog.table.item(0, 1).text() == "F7 *"
+    assert dialog.table.rows.item(0, 1).text() == "F7 *"
     dialog.default.click()
     assert shortcuts.keys("scan.find") == "F5"
     dialog.search.clear()
-    assert dialog.table.rowCount() == len(KEYS)
+    assert dialog.table.rows.rowCount() == len(KEYS)

@@ -319,7 +319,20 @@ MEASURED = 100
 
 
 class _FittedTable(QTableView):
-    """A table whose columns are as wide as their contents in the font that it is shown in."""
+    """A table of rows whose columns are as wide as their contents in the font that it is shown in."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.setShowGrid(False)
+        self.setTabKeyNavigation(False)
+        self.setWordWrap(False)
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of a sample differ at their end
+        self.verticalHeader().hide()
+        FontRowHeight(self, 9)
+        self.horizontalHeader().setHighlightSections(False)
+        self.horizontalHeader().setStretchLastSection(True)
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
@@ -349,18 +362,8 @@ class ParticleTable(_FittedTable):
         self._scrolls, self._empty, self._widths = scrolls, frozenset[str](), [0] * len(columns)
         self.setModel(self.particles)
         self.set_theme(current_theme())
-        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.setShowGrid(False)
-        self.setTabKeyNavigation(False)
-        self.setWordWrap(False)
-        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of a sample differ at their end
-        self.verticalHeader().hide()
-        FontRowHeight(self, 9)
         header = self.horizontalHeader()
-        header.setHighlightSections(False)
         header.setResizeContentsPrecision(MEASURED)
-        header.setStretchLastSection(True)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         self.setSortingEnabled(True)
         self.horizontalHeader().setSortIndicator(UNSORTED, Qt.SortOrder.AscendingOrder)
@@ -485,16 +488,6 @@ class TextTable(_FittedTable):
         self.setObjectName(name)
         self.setAccessibleName(spoken)
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.setShowGrid(False)
-        self.setTabKeyNavigation(False)
-        self.setWordWrap(False)
-        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
-        self.verticalHeader().hide()
-        FontRowHeight(self, 9)
-        self.horizontalHeader().setHighlightSections(False)
-        self.horizontalHeader().setStretchLastSection(True)
         if not numbers:
             self.horizontalHeader().setDefaultAlignment(Qt.AlignmentFlag.AlignLeft)
         self.rows = QStandardItemModel(0, len(headings), self)

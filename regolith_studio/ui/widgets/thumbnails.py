@@ -1,9 +1,10 @@
 """Thumbnails of meshes by the painter's algorithm, without OpenGL."""
 
-from collections.abc import Generator
+from collections import deque
+from collections.abc import Callable, Generator, Iterable
 
 import numpy as np
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QObject, QPointF, Qt, QTimer
 from PySide6.QtGui import QColor, QImage, QPainter, QPixmap, QPolygonF
 
 from regolith_studio.geometry.arrays import FloatArray
@@ -47,6 +48,45 @@ def paint_thumbnail(mesh: Mesh, colour: str, size: int = 96) -> Painting:
         yield
     smooth = Qt.TransformationMode.SmoothTransformation
     return QPixmap.fromImage(image.scaled(size, size, Qt.AspectRatioMode.KeepAspectRatio, smooth))
+
+
+Wanted = tuple[Mesh, str, Callable[[QPixmap], object]]
+"""A mesh, its colour, and the function that is called with its picture."""
+
+
+class ThumbnailQueue(QObject):
+    """Paints thumbnails one after the other, in steps, as meshes may have many triangles."""
+
+    def __init__(self, size: int, parent: QObject) -> None:
+        super().__init__(parent)
+        self._size, self._waiting = size, deque[Wanted]()
+        self._painting: Painting | None = None
+        self._timer = QTimer(self, interval=0)
+        self._timer.timeout.connect(self._go_on)
+
+    def paint(self, wanted: Iterable[Wanted]) -> None:
+        """Paint these in place of what waits."""
+        self.stop()
+        self._waiting.extend(wanted)
+        self._timer.start()
+
+    def stop(self) -> None:
+        self._timer.stop()
+        self._waiting.clear()
+        self._painting = None
+
+    def _go_on(self) -> None:
+        if not self._waiting:
+            self.stop()
+            return
+        mesh, colour, show = self._waiting[0]
+        self._painting = self._painting or paint_thumbnail(mesh, colour, self._size)
+        try:
+            next(self._painting)
+        except StopIteration as end:
+            self._painting = None
+            self._waiting.popleft()
+            show(end.value)
 
 
 def _project(mesh: Mesh) -> tuple[FloatArray, FloatArray]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PySide6.QtCore import QEvent, QSize, Qt, QTimer
+from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
@@ -21,7 +21,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, tr_count
 from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
+from regolith_studio.ui.widgets.thumbnails import ThumbnailQueue
 
 SIZE, CELL_WIDTH = 120, 140
 """Size of a thumbnail, and of a cell at least, in pixels."""
@@ -46,10 +46,7 @@ class RepresentativesGallery(QWidget):
         super().__init__()
         self._theme = current_theme()
         self._shown: tuple[GalleryItem, ...] = ()
-        self._next = 0
-        self._painting: Painting | None = None
-        self._timer = QTimer(self, interval=0)
-        self._timer.timeout.connect(self._draw_next)
+        self._pictures = ThumbnailQueue(SIZE, self)
         self.title = heading("")
         self.list = named(QListWidget(), "dataset_gallery", tr("Representative particles"))
         self.list.setViewMode(QListView.ViewMode.IconMode)
@@ -105,28 +102,15 @@ class RepresentativesGallery(QWidget):
         self._redraw()
 
     def release(self) -> None:
-        self._timer.stop()
-        self._painting = None
+        self._pictures.stop()
 
     def _redraw(self) -> None:
-        self._next, self._painting = 0, None
-        if self._shown:
-            self._timer.start()
-
-    def _draw_next(self) -> None:
-        if self._next >= len(self._shown):
-            self._timer.stop()
-            return
-        if self._painting is None:
-            each = self._shown[self._next]
-            colour = self._theme.polyhedron if each.coarsened else self._theme.particle
-            self._painting = paint_thumbnail(each.mesh, colour, SIZE)
-        try:
-            next(self._painting)
-        except StopIteration as end:
-            self.list.item(self._next).setIcon(end.value)
-            self._painting = None
-            self._next += 1
+        colours = self._theme.particle, self._theme.polyhedron
+        items = (self.list.item(row) for row in range(len(self._shown)))
+        self._pictures.paint(
+            (each.mesh, colours[each.coarsened], item.setIcon)
+            for each, item in zip(self._shown, items, strict=True)
+        )
 
 
 NAMES = {

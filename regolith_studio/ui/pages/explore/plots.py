@@ -9,11 +9,8 @@ import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import (
-    QAbstractItemView,
     QCheckBox,
-    QHeaderView,
     QSplitter,
-    QTableWidget,
     QTableWidgetItem,
     QWidget,
 )
@@ -35,6 +32,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.heat_table import numbers_table
 from regolith_studio.ui.widgets.labels import grouped_number, plain_symbol, short_number
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
@@ -58,15 +56,10 @@ class DescriptorTablePanel(QWidget):
         super().__init__()
         self.setObjectName("descriptor_table")
         self._keys = [key for key, row in CATALOGUE.items() if not row.costly]
-        self.table = named(QTableWidget(len(self._keys), len(COLUMNS)), spoken=tr("Descriptors"))
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
-        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.table.setShowGrid(False)
-        self.table.setFrameShape(self.table.Shape.NoFrame)
-        header = self.table.horizontalHeader()
-        header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        header.setDefaultAlignment(_RIGHT)
+        self.table = numbers_table(tr("Descriptors"))
+        self.table.setRowCount(len(self._keys))
+        self.table.setColumnCount(len(COLUMNS))
+        self.table.horizontalHeader().setDefaultAlignment(_RIGHT)
         FontRowHeight(self.table, 9)
         vbox(self.table, parent=self)
         self._values: tuple[Mapping[str, float] | None, ...] = (None,) * len(COLUMNS)

@@ -5,8 +5,8 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
-from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QIcon, QMouseEvent
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt, Signal
+from PySide6.QtGui import QAction, QIcon, QMouseEvent, QPixmap
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -59,7 +59,7 @@ from regolith_studio.ui.widgets.heat_table import centred_hint
 from regolith_studio.ui.widgets.labels import ElidedLabel, hint_label, plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.table import definition
-from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail, thumbnail
+from regolith_studio.ui.widgets.thumbnails import ThumbnailQueue, thumbnail
 
 ARROW = "  ▾"
 BOXES = {"exact": N_("exact minimum volume"), "trimesh": N_("trimesh's heuristic")}
@@ -369,9 +369,7 @@ class GalleryPanel(QWidget):
         self._cells: tuple[GalleryCell, ...] = ()
         self._particles: tuple[ParticleEntry, ...] = ()
         self._theme = current_theme()
-        self._painting: tuple[int, Painting] | None = None
-        self._timer = QTimer(self, interval=0)
-        self._timer.timeout.connect(self._paint_on)
+        self._pictures = ThumbnailQueue(SIZE, self)
         self.table = named(QTableWidget(), spoken=tr("Polyhedra by loss function and particle"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
@@ -393,7 +391,7 @@ class GalleryPanel(QWidget):
 
     def clear(self) -> None:
         self._cells, self._particles = (), ()
-        self._timer.stop()
+        self._pictures.stop()
         self._stack.setCurrentIndex(0)
 
     def begin(self, particles: Sequence[ParticleEntry], labels: Sequence[str]) -> None:
@@ -432,27 +430,13 @@ class GalleryPanel(QWidget):
             self._paint_particles()
 
     def _paint_particles(self) -> None:
-        """Begin to paint the first row, in steps, as particles may have many triangles."""
-        self._painting = None
-        self._waiting = list(range(len(self._particles)))
-        self._timer.start()
+        self._pictures.paint(
+            (entry.particle.mesh, self._theme.particle, partial(self._show_particle, column))
+            for column, entry in enumerate(self._particles)
+        )
 
-    def _paint_on(self) -> None:
-        if self._painting is None:
-            if not self._waiting:
-                self._timer.stop()
-                return
-            column = self._waiting.pop(0)
-            mesh = self._particles[column].particle.mesh
-            self._painting = column, paint_thumbnail(mesh, self._theme.particle, SIZE)
-        column, painting = self._painting
-        try:
-            next(painting)
-        except StopIteration as end:
-            item = QTableWidgetItem()
-            item.setIcon(QIcon(end.value))
-            self.table.setItem(0, column, item)
-            self._painting = None
+    def _show_particle(self, column: int, picture: QPixmap) -> None:
+        self.table.setItem(0, column, QTableWidgetItem(QIcon(picture), ""))
 
     def _cell(self, cell: GalleryCell) -> QTableWidgetItem:
         found = cell.outcome.coarsened
