@@ -346,7 +346,7 @@ def _painted(view: Any) -> Iterator[list[float]]:
     """Times at which something new was on the screen."""
     times: list[float] = []
     fresh = [False]
-    draw, canvas = view.draw, getattr(view, "_canvas", None)
+    draw, swapped = view.draw, getattr(view._plotter, "frameSwapped", None)
 
     def drawn(fill: Callable[[Any], None]) -> None:
         draw(fill)
@@ -365,16 +365,16 @@ def _painted(view: Any) -> Iterator[list[float]]:
         seen()
 
     view.draw = drawn
-    if canvas is not None:
-        canvas.frameSwapped.connect(seen)
+    if swapped is not None:
+        swapped.connect(seen)
     else:
         view._render = rendered
     try:
         yield times
     finally:
         del view.draw
-        if canvas is not None:
-            canvas.frameSwapped.disconnect(seen)
+        if swapped is not None:
+            swapped.disconnect(seen)
         else:
             del view._render
 

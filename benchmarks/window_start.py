@@ -96,8 +96,8 @@ def _frames(window: Any, now: Any, seen: dict[str, float]) -> None:
             now("three views")
 
     for name, view in window.page.three_views.views.items():
-        if (canvas := getattr(view, "_canvas", None)) is not None:
-            canvas.frameSwapped.connect(lambda name=name: painted(name))
+        if (swapped := getattr(view._plotter, "frameSwapped", None)) is not None:
+            swapped.connect(lambda name=name: painted(name))
         else:
             render = view._render
             view._render = lambda render=render, name=name: (render(), painted(name))

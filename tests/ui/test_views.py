@@ -120,7 +120,7 @@ def test_that_a_hidden_view_holds_no_graphics_memory_and_shows_the_same_picture_
     before = view.picture()
     view.widget.hide()
     if kind == "live":
-        assert not view._canvas.render_window.GetInitialized()
+        assert not view._plotter.render_window.GetInitialized()
     view.draw(lambda plotter: surfaces.show_fit(plotter, EGG))
     view.widget.show()
     assert differs(before, view.picture()) > 5

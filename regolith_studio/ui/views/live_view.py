@@ -1,20 +1,16 @@
 """A view that renders with OpenGL into the window."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
-import numpy as np
 from PySide6.QtCore import QEvent, QMessageLogContext, QtMsgType, qInstallMessageHandler
-from PySide6.QtGui import QHideEvent, QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QHideEvent, QImage, QKeyEvent, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
-from regolith_studio.scene import annotations, cameras, plotter_setup
-from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.layout import vbox
-from regolith_studio.ui.views.view import CameraMouse, KeepFramed, Picture
+from regolith_studio.ui.views.view import CameraMouse, SceneView
 
 
 class _Canvas(QtInteractor):
@@ -75,78 +71,28 @@ def _without_format_warning() -> Iterator[None]:
         qInstallMessageHandler(before)
 
 
-class LiveView(QWidget):
-    """See :class:`~regolith_studio.ui.views.view.SceneView`."""
+class LiveView(SceneView):
+    """A view of OpenGL, on a canvas of its own."""
 
     def __init__(self, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._canvas: Any = _Canvas(self)
-        self.mouse = CameraMouse(lambda: self.pose, self._move, self)
-        self._canvas.mouse = self.mouse
-        self._canvas.setMouseTracking(True)
-        plotter_setup.set_stage(self._canvas, surroundings)
-        self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
-        self._moved: list[Callable[[CameraPose], None]] = []
-        self._refitting = KeepFramed(self)
-        vbox(self._canvas, parent=self)
-
-    @property
-    def widget(self) -> QWidget:
-        return self
-
-    @property
-    def pose(self) -> CameraPose:
-        return cameras.pose_of(self._canvas)
-
-    def draw(self, fill: Callable[[Any], None]) -> None:
-        fill(self._canvas)
-        self._canvas.renderer.ResetCameraClippingRange()
-        self._canvas.update()
-
-    def set_pose(self, pose: CameraPose) -> None:
-        cameras.apply_pose(self._canvas, pose)
-        self._refitting.placed()
-        self._canvas.update()
-
-    def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
-        self._moved.append(callback)
-
-    def set_surroundings(self, surroundings: ThemeColors) -> None:
-        plotter_setup.set_background(self._canvas, surroundings)
-        self._scale_bar.set_ink(surroundings)
-        self._canvas.update()
-
-    def set_font_factor(self, factor: float) -> None:
-        self._scale_bar.set_factor(factor)
-        self._canvas.update()
-
-    def picture(self) -> Picture:
-        image = self._canvas.grabFramebuffer()
-        image = image.convertToFormat(image.Format.Format_RGB888)
-        rows = np.frombuffer(image.constBits(), dtype=np.uint8).reshape(image.height(), image.bytesPerLine())
-        return rows[:, : 3 * image.width()].reshape(image.height(), image.width(), 3).copy()
-
-    def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
-        self._scale_bar.suspended = True
-        try:
-            return plotter_setup.thumbnail(self._canvas, scale, transparent)
-        finally:
-            self._scale_bar.suspended = False
-            self._canvas.update()
+        canvas = _Canvas(self)
+        canvas.mouse = self.mouse
+        canvas.setMouseTracking(True)
+        self._set_stage(canvas, surroundings)
+        vbox(canvas, parent=self)
 
     def release(self) -> None:
-        self._moved.clear()
-        self.mouse.forget()
-        if self._canvas is not None:
-            self._scale_bar.remove()
-            self._canvas.mouse = None
-            self._canvas.close()
-            self._canvas = None
+        if self._plotter is not None:
+            self._plotter.mouse = None
+        super().release()
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        if self._canvas is not None:
-            self._refitting.resized()
+    def _ask(self) -> None:
+        self._plotter.update()
+
+    def _current_image(self) -> QImage:
+        image: QImage = self._plotter.grabFramebuffer()
+        return image.convertToFormat(QImage.Format.Format_RGB888)
 
     def hideEvent(self, event: QHideEvent) -> None:
         """Give back frame buffers, shaders and surfaces on the graphics card, some 10 MB a view.
@@ -155,10 +101,5 @@ class LiveView(QWidget):
         window keeps them.
         """
         super().hideEvent(event)
-        if self._canvas is not None and not event.spontaneous():
-            self._canvas.render_window.Finalize()
-
-    def _move(self, pose: CameraPose) -> None:
-        self.set_pose(pose)
-        for callback in self._moved:
-            callback(pose)
+        if self._plotter is not None and not event.spontaneous():
+            self._plotter.render_window.Finalize()

@@ -7,9 +7,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QEvent, QPointF, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QFrame, QLabel, QWidget
 
+from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import (
     CameraPose,
     Projection,
@@ -172,79 +173,106 @@ class CameraMouse:
 Picture = NDArray[np.uint8]
 
 
-class SceneView(Protocol):
-    """One view. ``draw`` schedules a repaint; calls are coalesced."""
+class SceneView(QWidget):
+    """One view: a plotter with its scale bar, which backends place and draw; calls to draw are coalesced."""
+
+    def __init__(self, parent: QWidget | None) -> None:
+        super().__init__(parent)
+        self._plotter: Any = None
+        self._moved: list[Callable[[CameraPose], None]] = []
+        self._aspect: float | None = None
+        self.mouse = CameraMouse(lambda: self.pose, self._move, self)
+        """Its ``handles`` can be dragged; ``pointed`` get where the mouse rests, ``left`` when it left."""
+
+    def _set_stage(self, plotter: Any, surroundings: ThemeColors) -> None:
+        self._plotter = plotter
+        plotter_setup.set_stage(plotter, surroundings)
+        self._scale_bar = annotations.ScaleBar(plotter, surroundings)
+
+    def _ask(self) -> None:
+        """Ask for a new picture."""
+        raise NotImplementedError
+
+    def _current_image(self) -> QImage:
+        """What is shown now, in RGB of 8 bits each."""
+        raise NotImplementedError
 
     @property
-    def widget(self) -> QWidget: ...
+    def widget(self) -> QWidget:
+        return self
 
     @property
-    def pose(self) -> CameraPose: ...
+    def pose(self) -> CameraPose:
+        return cameras.pose_of(self._plotter)
 
     def draw(self, fill: Callable[[Any], None]) -> None:
         """Let `fill` change what the plotter shows, and ask for a new picture."""
-        ...
+        fill(self._plotter)
+        self._plotter.renderer.ResetCameraClippingRange()
+        self._ask()
 
     def set_pose(self, pose: CameraPose) -> None:
         """Move the camera, fit its clipping range, ask for a new picture; tells nobody."""
-        ...
+        cameras.apply_pose(self._plotter, pose)
+        self._aspect = self.width() / max(self.height(), 1)
+        self._ask()
 
     def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
         """Call `callback` with the new pose whenever the user moves the camera."""
-        ...
-
-    @property
-    def mouse(self) -> CameraMouse:
-        """Its ``handles`` can be dragged; ``pointed`` get where the mouse rests, ``left`` when it left."""
-        ...
+        self._moved.append(callback)
 
     def set_surroundings(self, surroundings: ThemeColors) -> None:
         """Change background and inks."""
-        ...
+        plotter_setup.set_background(self._plotter, surroundings)
+        self._scale_bar.set_ink(surroundings)
+        self._ask()
 
     def set_font_factor(self, factor: float) -> None:
         """Change the size of the scale bar."""
-        ...
+        self._scale_bar.set_factor(factor)
+        self._ask()
 
     def picture(self) -> Picture:
         """What the view shows now, shape (height, width, 3)."""
-        ...
+        image = self._current_image()
+        rows = np.frombuffer(image.constBits(), dtype=np.uint8).reshape(image.height(), image.bytesPerLine())
+        return rows[:, : 3 * image.width()].reshape(image.height(), image.width(), 3).copy()
 
     def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
         """What the view shows at a multiple of its size, shape (height, width, 3), or 4 if transparent.
 
         Without what is laid out in pixels: the scale bar.
         """
-        ...
+        self._scale_bar.suspended = True
+        try:
+            return plotter_setup.thumbnail(self._plotter, scale, transparent)
+        finally:
+            self._scale_bar.suspended = False
+            self._ask()
 
     def release(self) -> None:
         """Give the graphics memory back; the view is of no use afterwards."""
-        ...
+        self._moved.clear()
+        self.mouse.forget()
+        if self._plotter is not None:
+            self._scale_bar.remove()
+            self._plotter.close()
+            self._plotter = None
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep what is shown along the shorter side, whatever the user has done with the camera.
 
-class KeepFramed:
-    """Adapts the camera to the aspect ratio of its view.
+        A body that was framed is framed again, and what was looked at closely stays as close.
+        """
+        super().resizeEvent(event)
+        before = self._aspect
+        if self._plotter is not None and before is not None and self.width() and self.height():
+            self.set_pose(refitted(self.pose, before, self.width() / self.height()))
 
-    What is shown along the shorter side is kept, whatever the user has done with the camera: a body that was
-    framed is framed again, and what was looked at closely stays as close.
-
-    ``view``: tells when its camera was placed and when it was resized.
-    """
-
-    def __init__(self, view: SceneView) -> None:
-        self._view = view
-        self._aspect: float | None = None
-
-    def placed(self) -> None:
-        """The camera stands where it should, for the present size of the view."""
-        size = self._view.widget.size()
-        self._aspect = size.width() / max(size.height(), 1)
-
-    def resized(self) -> None:
-        """The view has another size."""
-        size, before = self._view.widget.size(), self._aspect
-        if before is not None and size.width() and size.height():
-            self._view.set_pose(refitted(self._view.pose, before, size.width() / size.height()))
+    def _move(self, pose: CameraPose) -> None:
+        self.set_pose(pose)
+        for callback in self._moved:
+            callback(pose)
 
 
 class CameraLink:
