@@ -11,13 +11,16 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QScrollArea, QSplitter, QWidget
 
 from regolith_studio.jobs.events import Job, Progress
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import Project
+from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.actions import CommandPalette
 from regolith_studio.ui.activity import TaskListPanel
 from regolith_studio.ui.dialogs.help import TOUR_SEEN, Tour, start_tour, steps
 from regolith_studio.ui.keyboard import plain
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.explore.page import ParticleListPanel
 from regolith_studio.ui.pages.lecture.page import LESSONS
 from regolith_studio.ui.project_files import autosave_path, needs_confirmation, stale_autosaves
@@ -35,6 +38,12 @@ def wait_for_ever():
 @pytest.fixture
 def window(sample_window):
     return sample_window(1200, 760)
+
+
+@pytest.fixture
+def bare(shown, preferences):
+    """A window without particles, which computes nothing."""
+    return shown(MainWindow(Session(InlineRunner()), preferences, "image"))
 
 
 def answer(name):
@@ -70,16 +79,16 @@ def test_that_the_palette_finds_commands_of_the_window_and_of_hidden_pages(windo
     wait(lambda: window.findChild(CommandPalette) is None)
 
 
-def test_that_every_command_has_a_tip_keys_of_its_own_and_a_row_in_the_palette(window):
-    listed = [command.title for command in window.menus.palette(window.pages.pages, window.pages.run)]
+def test_that_every_command_has_a_tip_keys_of_its_own_and_a_row_in_the_palette(bare):
+    listed = [command.title for command in bare.menus.palette(bare.pages.pages, bare.pages.run)]
     assert len(listed) == len(set(listed))
-    for key, page in window.pages.pages.items():
+    for key, page in bare.pages.pages.items():
         for row in page.actions:
             if row.text:
-                assert f"{page.title}: {plain(window.menus.by_name[f'{key}.{row.name}'])}" in listed
+                assert f"{page.title}: {plain(bare.menus.by_name[f'{key}.{row.name}'])}" in listed
     assert {"Lecture: Play or pause", "Lecture: Step forward", "Lecture: Full screen"} <= set(listed)
     owners = {}
-    for name, action in window.menus.by_name.items():
+    for name, action in bare.menus.by_name.items():
         assert action.toolTip(), name
         page = name.split(".")[0] if "." in name and not name.startswith("go.") else ""
         if keys := action.shortcut().toString():
@@ -114,7 +123,7 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     assert window.preferences.recent[0] == str(target)
 
 
-def test_that_what_another_window_has_saved_is_not_replaced_without_asking(window, tmp_path, monkeypatch):
+def test_that_what_another_window_has_saved_is_not_replaced_without_asking(bare, tmp_path, monkeypatch):
     target = tmp_path / "work.regolith"
     asked, answers = [], [QMessageBox.StandardButton.No, QMessageBox.StandardButton.Yes]
 
@@ -126,15 +135,15 @@ def test_that_what_another_window_has_saved_is_not_replaced_without_asking(windo
     monkeypatch.setattr(
         "regolith_studio.ui.project_files.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
     )
-    assert window.projects.save()
-    assert window.projects.save()
+    assert bare.projects.save()
+    assert bare.projects.save()
     assert not asked, "nobody else has saved it"
     target.write_text("saved by another window")
-    window.session.choose(n_facets=15)
-    assert not window.projects.save()
+    bare.session.choose(n_facets=15)
+    assert not bare.projects.save()
     assert target.read_text() == "saved by another window"
-    assert window.projects.modified
-    assert window.projects.save()
+    assert bare.projects.modified
+    assert bare.projects.save()
     assert '"n_facets": 15' in target.read_text()
     assert asked == 2 * [
         "work.regolith has changed on the disk since this window opened or saved it. Replace it?"
@@ -171,7 +180,7 @@ def test_that_what_cannot_be_written_leaves_the_earlier_project_and_no_export(
     assert [(path.name, path.read_bytes()) for path in left] == [(target.name, kept)]
 
 
-def test_that_a_project_whose_name_was_completed_replaces_none_without_asking(window, tmp_path, monkeypatch):
+def test_that_a_project_whose_name_was_completed_replaces_none_without_asking(bare, tmp_path, monkeypatch):
     other = tmp_path / "sample 1.5.regolith"
     other.write_text("of yesterday")
     monkeypatch.setattr(
@@ -179,10 +188,10 @@ def test_that_a_project_whose_name_was_completed_replaces_none_without_asking(wi
         lambda *_: (str(tmp_path / "sample 1.5"), ""),
     )
     monkeypatch.setattr(QMessageBox, "exec", lambda _: QMessageBox.StandardButton.No.value)
-    assert not window.projects.save_as()
+    assert not bare.projects.save_as()
     assert other.read_text() == "of yesterday"
     other.unlink()
-    assert window.projects.save_as()
+    assert bare.projects.save_as()
     assert [path.name for path in tmp_path.glob("sample*")] == ["sample 1.5.regolith"]
 
 
@@ -268,10 +277,8 @@ def test_that_the_log_keeps_what_was_said_with_its_details(window):
     assert not window.activity.isVisible()
 
 
-def test_that_tasks_are_listed_and_can_be_stopped_one_by_one(window):
-    window.menus.by_name["tasks"].trigger()
-    panel, asked = window.activity.tasks, []
-    panel.cancelRequested.disconnect()
+def test_that_tasks_are_listed_and_can_be_stopped_one_by_one(shown):
+    panel, asked = shown(TaskListPanel()), []
     panel.cancelRequested.connect(asked.append)
     panel.show_tasks([Task(3, "a", "Reading", 1, 4, "x.stl"), Task(5, "b", "Building", 0, 0)])
     panel.findChild(QPushButton, "stop_task_5").click()

@@ -1,7 +1,7 @@
 """The heap of the page "Angle of repose": its angle, its sections and its three-dimensional view."""
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import orbited
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.pages.repose.heap import MANY_DISCS, drawn_discs, particle_text
-from regolith_studio.ui.pages.repose.player import BALLS, PositionsDialog, RunPlayer
+from regolith_studio.ui.pages.repose.player import BALLS, PositionsDialog, RunPlayer, read_pile, restored_heap
 from tests.ui.repose.conftest import import_positions, pile_of
 
 
@@ -103,7 +103,7 @@ def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tm
     ids=str,
 )
 def test_that_one_dialog_asks_only_what_a_table_does_not_state(
-    page, tmp_path, monkeypatch, wait, head, columns, fields
+    shown, tmp_path, monkeypatch, head, columns, fields
 ):
     pile = pile_of(35.0)
     path = tmp_path / "pile.csv"
@@ -117,7 +117,7 @@ def test_that_one_dialog_asks_only_what_a_table_does_not_state(
         asked.append({name for name in names if dialog.findChild(QWidget, name).isVisibleTo(dialog)})
         if "positions_columns" in fields:
             dialog.columns.setText(fields["positions_columns"])
-            dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
+            dialog.unit.choose("mm")
             assert not dialog.diameter.isEnabled(), "a column is the diameter"
         elif "positions_unit" in fields:
             assert "would extend over" in dialog.size_note.text(), "millimetres are suggested by the width"
@@ -125,19 +125,13 @@ def test_that_one_dialog_asks_only_what_a_table_does_not_state(
         return QDialog.DialogCode.Accepted
 
     monkeypatch.setattr(PositionsDialog, "exec", answer)
-    page.open_path(path)
-    wait(lambda: page._measured is not None)
-    assert page._measured.angle == pytest.approx(35.0, abs=2.0)
-    assert page._pile.diameters == pytest.approx(2e-3)
+    heap, read, _ = read_pile(shown(QWidget()), path)
     extra = {"positions_diameter"} if "positions_columns" in fields else set()
     assert asked == ([set(fields) | extra] if fields else [])
-    assert path.name in page.angle.sentence.text()
-    state = json.loads(json.dumps(page.state()))
-    page._show_nothing("")
-    page.restore(state)
-    wait(lambda: page._measured is not None)
-    assert page._pile.diameters == pytest.approx(2e-3), "what was answered is kept with the project"
-    assert path.name in page.angle.sentence.text()
+    _, again = restored_heap(json.loads(json.dumps(asdict(heap))))
+    for found in (read, again):  # what was answered is kept with the project
+        np.testing.assert_allclose(found.points, pile.points, atol=1e-9)
+        assert found.diameters == pytest.approx(2e-3)
 
 
 def test_that_a_project_says_when_its_positions_have_changed_or_moved(page, tmp_path, wait, monkeypatch):

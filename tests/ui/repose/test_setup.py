@@ -30,6 +30,11 @@ from regolith_studio.ui.widgets.forms import ParameterForm
 from tests.dem.conftest import box_dataset
 
 
+@pytest.fixture
+def setup(shown):
+    return shown(SetupPanel())
+
+
 def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
     form = shown(ParameterForm(ContactParameters, "contact"))
     assert form.editors["youngs_modulus"].value() == pytest.approx(30.0)
@@ -169,26 +174,25 @@ def test_that_wishes_without_a_dataset_are_one_sentence(page):
     assert "No particles are open" in page._context.toast.sentence.text()
 
 
-def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, dataset):
-    page.setup.gravity.setCurrentIndex(1)
-    assert page.setup.request().case.test.gravity == 1.62
-    page.setup.test.setValue(replace(page.setup.test.value(), gravity=5.0))
-    page.setup.test.valueChanged.emit({})
-    assert page.setup.gravity.currentText() == "Other"
-    page.setup.set_dataset(dataset)
-    page.setup.seed.setValue(7)
-    kept = json.loads(json.dumps(page.state()))
-    page.setup.seed.setValue(0)
-    page.setup.test.setValue(LiftingCylinderTest())
-    page.restore(kept)
-    request = page.setup.request()
+def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(setup, dataset):
+    setup.gravity.setCurrentIndex(1)
+    assert setup.request().case.test.gravity == 1.62
+    setup.test.setValue(replace(setup.test.value(), gravity=5.0))
+    setup.test.valueChanged.emit({})
+    assert setup.gravity.currentText() == "Other"
+    setup.set_dataset(dataset)
+    setup.seed.setValue(7)
+    kept = json.loads(json.dumps(setup.state()))
+    setup.seed.setValue(0)
+    setup.test.setValue(LiftingCylinderTest())
+    setup.restore(kept)
+    request = setup.request()
     assert (request.case.seed, request.case.test.gravity) == (7, 5.0)
-    page.restore({"setup": {"test": {"gravity": "heavy"}, "unknown": 1}})
-    page.restore({"setup": 3})
+    setup.restore({"test": {"gravity": "heavy"}, "unknown": 1})
+    assert setup.request().case == request.case
 
 
-def test_that_a_drum_has_its_own_cylinder_and_an_engine_that_turns_it(page):
-    setup = page.setup
+def test_that_a_drum_has_its_own_cylinder_and_an_engine_that_turns_it(setup):
     setup.test.setValue(LiftingCylinderTest(mass=0.01, wall_friction=0.5))
     assert setup.request().case.drum is None
     setup.apparatus.setCurrentIndex(1)
@@ -200,28 +204,28 @@ def test_that_a_drum_has_its_own_cylinder_and_an_engine_that_turns_it(page):
     assert setup.measured_angle() == (38.0, 1.0)
     with pytest.raises(RegolithError, match="lift a cylinder"):
         setup.request_of_series()
-    kept = json.loads(json.dumps(page.state()))
+    kept = json.loads(json.dumps(setup.state()))
     setup.apparatus.setCurrentIndex(0)
     setup.measured.setValue(0.0)
     assert setup.request().case.test == LiftingCylinderTest(mass=0.01, wall_friction=0.5)
-    page.restore(kept)
+    setup.restore(kept)
     assert setup.request().case == request.case
     assert setup.measured_angle() == (38.0, 1.0)
 
 
-def test_that_each_engine_has_its_own_numerics(page):
-    page.setup.numerics.setValue({"time_step": 0.01})
-    page.setup.engine.setCurrentIndex(page.setup.engine.findData("lammps"))
-    assert page.setup.request().engine == "lammps"
-    page.setup.numerics.setValue({"spheres": 3})
-    assert page.setup.request().settings.spheres == 3
-    kept = page.state()
-    page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
-    page.setup.numerics.setValue({})
-    page.restore(kept)
-    assert page.setup.request().settings.spheres == 3
-    page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
-    assert page.setup.request().settings.time_step == 0.01
+def test_that_each_engine_has_its_own_numerics(setup):
+    setup.numerics.setValue({"time_step": 0.01})
+    setup.engine.setCurrentIndex(setup.engine.findData("lammps"))
+    assert setup.request().engine == "lammps"
+    setup.numerics.setValue({"spheres": 3})
+    assert setup.request().settings.spheres == 3
+    kept = setup.state()
+    setup.engine.setCurrentIndex(setup.engine.findData("mujoco"))
+    setup.numerics.setValue({})
+    setup.restore(kept)
+    assert setup.request().settings.spheres == 3
+    setup.engine.setCurrentIndex(setup.engine.findData("mujoco"))
+    assert setup.request().settings.time_step == 0.01
 
 
 def test_that_the_open_particles_become_a_dataset(page, wait):
@@ -273,11 +277,11 @@ def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking
     assert "150" in panel.problem.text()
 
 
-def test_that_no_run_can_be_set_up_with_fewer_particles_than_its_evaluation_accepts(page):
-    assert page.setup.particles.minimum() == EvaluationSettings().min_particles
-    page.setup.set_evaluation(min_particles=60)
-    page.setup.particles.setValue(10)
-    assert page.setup.request().case.n_particles == 60
+def test_that_no_run_can_be_set_up_with_fewer_particles_than_its_evaluation_accepts(setup):
+    assert setup.particles.minimum() == EvaluationSettings().min_particles
+    setup.set_evaluation(min_particles=60)
+    setup.particles.setValue(10)
+    assert setup.request().case.n_particles == 60
 
 
 def test_that_the_lights_say_how_far_a_case_is_from_what_is_recommended(page, dataset, wait, monkeypatch):
