@@ -24,8 +24,6 @@ from regolith_studio.ui.page import BREAK, PAGE_MENU, VIEW, ActionSpec, Page
 from regolith_studio.ui.theme import Theme, font_share, icon
 from regolith_studio.ui.translation import tr
 
-SHOWN = 14
-
 
 @dataclass(frozen=True)
 class Command:

@@ -93,10 +93,7 @@ class Collapsible(QWidget):
     def __init__(self, title: str, *parts: QWidget) -> None:
         super().__init__()
         self.content = QWidget()
-        column = QVBoxLayout(self.content)
-        column.setContentsMargins(0, 0, 0, 0)
-        for part in parts:
-            column.addWidget(part)
+        vbox(*parts, parent=self.content)
         self.button = QToolButton()
         self.button.setText(title)
         self.button.setCheckable(True)
@@ -104,11 +101,7 @@ class Collapsible(QWidget):
         self.button.setProperty("role", "fold")
         self.button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.button.setAccessibleName(title)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(4)
-        layout.addWidget(self.button)
-        layout.addWidget(self.content)
+        vbox(self.button, self.content, parent=self, spacing=4)
         self.button.toggled.connect(self.set_open)
         self.set_open(False)
 
@@ -134,20 +127,14 @@ class GrowingDialog(QDialog):
 def control_row(*parts: QWidget, margins: tuple[int, int, int, int] = (0, 0, 0, 0)) -> QWidget:
     """Controls beside each other; combo boxes take the room that is left, and elide where there is none."""
     made = QWidget()
-    row = QHBoxLayout(made)
-    row.setContentsMargins(*margins)
-    for part in parts:
-        row.addWidget(part, int(isinstance(part, QComboBox)))
+    hbox(*((part, int(isinstance(part, QComboBox))) for part in parts), parent=made, margins=margins)
     return made
 
 
 def left_aligned(part: QWidget) -> QWidget:
     """A part at the left of what room there is, as wide as it needs."""
     made = QWidget()
-    row = QHBoxLayout(made)
-    row.setContentsMargins(0, 0, 0, 0)
-    row.addWidget(part)
-    row.addStretch(1)
+    hbox(part, STRETCH, parent=made)
     return made
 
 
@@ -269,18 +256,14 @@ def name_tabs(made: QTabWidget) -> None:
     made.tabBar().setAccessibleName(", ".join(map(made.tabText, range(made.count()))))
 
 
-def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30) -> QScrollArea:
-    """Panels below each other, with a scroll bar where they do not fit; at least so many pixels wide.
+def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
+    """Panels below each other, with a scroll bar where they do not fit.
 
     Without the scroll bar its room stays empty, so that no panel changes its width when it comes or goes.
     """
     inside = QWidget()
-    column = QVBoxLayout(inside)
-    column.setSpacing(8)
-    for panel in panels:
-        column.addWidget(panel)
-    column.addStretch(1)
-    area = _Column(least)
+    column = vbox(*panels, STRETCH, parent=inside, spacing=8)
+    area = _Column(CONTROLS_WIDTH - 30)
     bar = area.verticalScrollBar()
 
     def keep_width(_low: int, high: int) -> None:
@@ -354,7 +337,5 @@ def framed(part: QWidget) -> QFrame:
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:
     frame = QWidget()
-    layout = QVBoxLayout(frame)
-    layout.setContentsMargins(left, top, right, bottom)
-    layout.addWidget(part)
+    vbox(part, parent=frame, margins=(left, top, right, bottom))
     return frame

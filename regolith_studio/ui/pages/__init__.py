@@ -57,7 +57,7 @@ What a page can rely on
   status bar and in the task list by themselves; ``context.session.cancel(number)`` cancels, and
   :class:`~regolith_studio.ui.result_card.RunController` runs one job with its state, time left and
   result on a card. Never compute in a slot for more than 50 ms.
-* **Three-dimensional views**: ``make_view(context.views, theme.surroundings)`` from ``ui.views.image_view``,
+* **Three-dimensional views**: ``make_view(context.views)`` from ``ui.views.image_view``,
   filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.on_close`.
 * **Words**: ``context.toast.note("Saved.")``, ``context.toast.problem("One sentence.", details)``.
 * **Memory**: ``context.remember(name, value)``, ``context.recall(name, default)`` from one start to the next;

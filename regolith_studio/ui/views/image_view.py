@@ -4,20 +4,19 @@ import numpy as np
 import pyvista as pv
 from PySide6.QtCore import QEvent, QRect, Qt
 from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from regolith_studio.scene import plotter_setup
-from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.views.view import Picture, SceneView
 
 
 class ImageView(SceneView):
     """A view whose plotter draws off-screen when it is painted."""
 
-    def __init__(self, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         plotter_setup.choose_off_screen_window()
-        self._set_stage(pv.Plotter(off_screen=True, window_size=[64, 64]), surroundings)
+        self._set_stage(pv.Plotter(off_screen=True, window_size=[64, 64]))
         self._image = QImage()
         self._stale = True
         self.setMouseTracking(True)
@@ -75,10 +74,10 @@ class ImageView(SceneView):
         self._stale = False
 
 
-def make_view(kind: str, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> SceneView:
-    """A view of the kind ``live`` or ``image``."""
+def make_view(kind: str) -> SceneView:
+    """A view of the kind ``live`` or ``image``, in the colours of the present theme."""
     if kind == "image":
-        return ImageView(surroundings, parent)
+        return ImageView()
     from regolith_studio.ui.views.live_view import LiveView
 
-    return LiveView(surroundings, parent)
+    return LiveView()

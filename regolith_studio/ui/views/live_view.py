@@ -8,7 +8,6 @@ from PySide6.QtGui import QHideEvent, QImage, QKeyEvent, QMouseEvent, QWheelEven
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
-from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.layout import vbox
 from regolith_studio.ui.views.view import CameraMouse, SceneView
 
@@ -74,12 +73,12 @@ def _without_format_warning() -> Iterator[None]:
 class LiveView(SceneView):
     """A view of OpenGL, on a canvas of its own."""
 
-    def __init__(self, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         canvas = _Canvas(self)
         canvas.mouse = self.mouse
         canvas.setMouseTracking(True)
-        self._set_stage(canvas, surroundings)
+        self._set_stage(canvas)
         vbox(canvas, parent=self)
 
     def release(self) -> None:

@@ -212,10 +212,8 @@ class ThreeViews(QSplitter):
         self.setObjectName("three_views")
         self.setChildrenCollapsible(False)
         self._theme = current_theme()
-        ink = self._theme.surroundings
         self.frames = {
-            name: ViewFrame(make_view(kind, ink), name, partners_of(name), COMPARE[name], name)
-            for name in NAMES
+            name: ViewFrame(make_view(kind), name, partners_of(name), COMPARE[name], name) for name in NAMES
         }
         self.views = {name: frame.view for name, frame in self.frames.items()}
         self.link = CameraLink(list(self.views.values()))

@@ -25,7 +25,7 @@ from regolith_studio.scene.cameras import (
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.ui.keyboard import FOCUSED
 from regolith_studio.ui.layout import hbox, named, vbox
-from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fields import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel
@@ -176,16 +176,16 @@ Picture = NDArray[np.uint8]
 class SceneView(QWidget):
     """One view: a plotter with its scale bar, which backends place and draw; calls to draw are coalesced."""
 
-    def __init__(self, parent: QWidget | None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self._plotter: Any = None
         self._moved: list[Callable[[CameraPose], None]] = []
         self._aspect: float | None = None
         self.mouse = CameraMouse(lambda: self.pose, self._move, self)
         """Its ``handles`` can be dragged; ``pointed`` get where the mouse rests, ``left`` when it left."""
 
-    def _set_stage(self, plotter: Any, surroundings: ThemeColors) -> None:
-        self._plotter = plotter
+    def _set_stage(self, plotter: Any) -> None:
+        self._plotter, surroundings = plotter, current_theme().surroundings
         plotter_setup.set_stage(plotter, surroundings)
         self._scale_bar = annotations.ScaleBar(plotter, surroundings)
 

@@ -392,14 +392,14 @@ class NumberSlider(QWidget):
         self.editingFinished.emit()
 
 
-def align_labels(sliders: Iterable[NumberSlider], min_width: int = 0) -> None:
-    """Give the labels of several sliders the same width, at least `min_width` pixels."""
+def align_labels(sliders: Iterable[NumberSlider]) -> None:
+    """Give the labels of several sliders the same width."""
     each = list(sliders)
     for slider in each:
         slider.label.setMinimumWidth(0)  # a label wants at least that
     widest = max((slider.label.sizeHint().width() for slider in each), default=0)
     for slider in each:
-        slider.label.setFixedWidth(max(widest, min_width))
+        slider.label.setFixedWidth(widest)
 
 
 class StepPlayer(QWidget):

@@ -6,12 +6,12 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QToolButton, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
-from regolith_studio.ui.layout import control_row, named
+from regolith_studio.ui.layout import control_row, named, vbox
 from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.fields import ChoiceBox
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -63,10 +63,7 @@ class PresetBar(QWidget):
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more.setMenu(self._menu())
         self._make_room()
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        buttons = (self.reset, self.more)
-        layout.addWidget(control_row(title or self.box, *buttons))
+        layout = vbox(control_row(title or self.box, self.reset, self.more), parent=self)
         if title is not None:
             layout.addWidget(self.box)
         self.box.activated.connect(lambda _: self.chosen.emit(self.current()))

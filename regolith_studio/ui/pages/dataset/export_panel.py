@@ -31,7 +31,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
 from regolith_studio.settings import settings_in
-from regolith_studio.ui.layout import Collapsible, hbox, named, vbox
+from regolith_studio.ui.layout import STRETCH, Collapsible, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.fields import ElidedCheckBox, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -315,12 +315,8 @@ class ExportsList(QWidget):
         super().__init__()
         self.setObjectName("dataset_exports")
         self._rows = QVBoxLayout()
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(8, 6, 8, 6)
         self._empty = hint_label(tr("What has been exported is listed here, with the command that loads it."))
-        layout.addWidget(self._empty)
-        layout.addLayout(self._rows)
-        layout.addStretch(1)
+        vbox(self._empty, self._rows, STRETCH, parent=self, margins=(8, 6, 8, 6))
         self._exports: tuple[ExportResult, ...] = ()
 
     @property

@@ -49,9 +49,7 @@ class AnnealingView(QWidget):
         """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("annealing", "exact"):
-            self.frames[name] = ViewFrame(
-                make_view(self._kind, self._theme.surroundings), f"lecture_{name}", colour="polyhedron"
-            )
+            self.frames[name] = ViewFrame(make_view(self._kind), f"lecture_{name}", colour="polyhedron")
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = named(WrappedLabel(tr(WAIT)), "annealing_sentence")
         self.loss_formula = FormulaLabel(tr("The loss with its numbers"))

@@ -189,9 +189,7 @@ class DegreesView(QWidget):
         """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("particle", "fit"):
-            self.frames[name] = ViewFrame(
-                make_view(self._kind, self._theme.surroundings), f"degrees_{name}", colour=name
-            )
+            self.frames[name] = ViewFrame(make_view(self._kind), f"degrees_{name}", colour=name)
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = hint_label(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
@@ -304,9 +302,7 @@ class FieldView(QWidget):
         """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("sphere", "grain"):
-            self.frames[name] = ViewFrame(
-                make_view(self._context.views, self._theme.surroundings), f"field_{name}", colour="fit"
-            )
+            self.frames[name] = ViewFrame(make_view(self._context.views), f"field_{name}", colour="fit")
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = hint_label("", role="")
         self.sentence.setObjectName("field_sentence")

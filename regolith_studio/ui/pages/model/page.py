@@ -54,7 +54,6 @@ from regolith_studio.ui.pages.model.controls import (
 )
 from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
 from regolith_studio.ui.result_card import ResultRecord, RunController
-from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import in_a_sentence, number_text, tr, translate
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.widgets.labels import short_number
@@ -257,17 +256,10 @@ class ModelPage(PageWidget):
         )
 
     def build(self) -> None:
-        views, bindings, surroundings = (
-            self._context.views,
-            self._context.bindings,
-            current_theme().surroundings,
-        )
+        views, bindings = self._context.views, self._context.bindings
         self.source = SourceControls()
         self.drawing = DrawControls()
-        view = make_view(views, surroundings)
-        self.live = LiveShape(view)
-        view = make_view(views, surroundings)
-        self.gallery = ShapeGallery(view)
+        self.live, self.gallery = LiveShape(make_view(views)), ShapeGallery(make_view(views))
         self.distributions = DistributionsPanel()
         self.evaluation = EvaluationPanel()
         self.judging = RunController(self._context, self.evaluation.card, "evaluate", self.evaluate)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Signal
-from PySide6.QtWidgets import QHBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.drum_angle import compare_angles
@@ -18,7 +18,7 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.messages import N_
 from regolith_studio.studies.figures.repose import framed
-from regolith_studio.ui.layout import vbox
+from regolith_studio.ui.layout import STRETCH, hbox, vbox
 from regolith_studio.ui.pages.repose.setup import CaseScale
 from regolith_studio.ui.result_card import ResultRecord, ResultState
 from regolith_studio.ui.translation import localized, tr, translate
@@ -308,13 +308,9 @@ class HeapSections(QWidget):
         self.plot = SectionPlot()
         self.course = CurvePlot(tr("Time [s]"), tr("Angle of the surface [°]"), "")
         self.course.hide()
-        row = QHBoxLayout()
-        row.setContentsMargins(8, 6, 8, 0)
         self._label = hint_label(tr("Section"))
         self._label.setWordWrap(False)
-        row.addWidget(self._label)
-        row.addWidget(self.azimuth)
-        row.addStretch(1)
+        row = hbox(self._label, self.azimuth, STRETCH, margins=(8, 6, 8, 0))
         vbox(row, (self.plot, 1), (self.course, 1), parent=self)
         self.azimuth.currentIndexChanged.connect(lambda *_: self._show_chosen())
         self.show_nothing()

@@ -214,9 +214,7 @@ class RunPlayer(StepPlayer):
 
     def __init__(self, views: str) -> None:
         super().__init__("repose_time", tr("Time of the run"), FRAME)
-        self.frame = ViewFrame(
-            make_view(views, current_theme().surroundings), "repose_view", colour="polyhedron"
-        )
+        self.frame = ViewFrame(make_view(views), "repose_view", colour="polyhedron")
         self._camera = CameraLink([self.frame.view])
         self._theme = current_theme()
         self._shapes: tuple[Sequence[FloatArray], ...] = ()

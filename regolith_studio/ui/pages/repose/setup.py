@@ -12,11 +12,8 @@ from PySide6.QtWidgets import (
     QBoxLayout,
     QFormLayout,
     QFrame,
-    QHBoxLayout,
     QLabel,
-    QLayout,
     QPushButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -36,7 +33,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
-from regolith_studio.ui.layout import Collapsible, hbox, named
+from regolith_studio.ui.layout import STRETCH, Collapsible, hbox, named, vbox
 from regolith_studio.ui.pages.repose.runs import duration_text
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
@@ -101,9 +98,7 @@ class LimitsStrip(QWidget):
         self.setObjectName("repose_limits")
         self._scale: CaseScale | None = None
         self._theme = current_theme()
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
+        row = hbox(parent=self, spacing=8)
         self.lights = tuple(QLabel("●") for _ in ROWS)
         self.texts = tuple(ElidedLabel() for _ in ROWS)
         self.buttons = tuple(QPushButton() for _ in ROWS)
@@ -430,32 +425,35 @@ class SetupPanel(QWidget):
         form.addRow(tr("Engine"), self.engine)
         form.addRow(tr("Gravity of"), self.gravity)
         form.addRow(tr("Filling"), self.filling)
-        case = _column(
+        case = vbox(
             heading(tr("Dataset")),
             self.dataset_label,
             self.dataset_note,
-            _row(self.open_button, self.sample_button),
+            hbox(self.open_button, self.sample_button, spacing=6),
             heading(tr("Particles")),
-            _row(*presets),
+            hbox(*presets, spacing=6),
             form,
             self.problem,
             self.scaling_report,
+            STRETCH,
+            spacing=8,
         )
         self.drum.rows.addRow(tr("Measured dynamic angle"), self.measured)
         self.drum.rows.addRow(tr("Standard error"), self.measured_error)
         self._drum_box = Collapsible(tr("Rotating drum"), self.drum)
-        values = _column(
+        values = vbox(
             self._drum_box,
             Collapsible(tr("Test"), self.test),
             Collapsible(tr("Contact"), self.contact),
             Collapsible(tr("Evaluation of the heap"), self.evaluation),
             Collapsible(tr("Numerics of the engine"), *self._numerics.values()),
             hint_label(tr("* not given in the paper: an assumption that can be changed")),
+            STRETCH,
+            spacing=8,
         )
         self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._columns.setSpacing(COLUMN_GAP)
         for column in (case, values):
-            column.addStretch(1)
             self._columns.addLayout(column, 1)
 
     def minimumSizeHint(self) -> QSize:
@@ -529,21 +527,6 @@ class SetupPanel(QWidget):
 
 def _button(text: str, name: str, tip: str) -> QPushButton:
     return named(QPushButton(text), name, tip, tip=tip)
-
-
-def _column(*parts: QWidget | QLayout) -> QVBoxLayout:
-    column = QVBoxLayout()
-    column.setSpacing(8)
-    for part in parts:
-        if isinstance(part, QLayout):
-            column.addLayout(part)
-        else:
-            column.addWidget(part)
-    return column
-
-
-def _row(*widgets: QWidget) -> QHBoxLayout:
-    return hbox(*widgets, spacing=6)
 
 
 def engine_table() -> TextTable:

@@ -40,7 +40,6 @@ from regolith_studio.session.sample_table import filter_of, health_sentences, sa
 from regolith_studio.ui.layout import STRETCH, FoldingSplitter, equal_parts, hbox, named, stacked, tabs, vbox
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.plots import MatchPanel, ScatterPanel, StatisticsPanel
-from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import localized, number_text, rich, tr, translate, with_decimal_point
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
@@ -269,9 +268,7 @@ class SamplePage(PageWidget):
         self.statistics = StatisticsPanel()
         self.scatter, self.match = ScatterPanel(), MatchPanel(self._context)
         self.health = HealthPanel()
-        self.frame = ViewFrame(
-            make_view(self._context.views, current_theme().surroundings), "sample_view", colour="particle"
-        )
+        self.frame = ViewFrame(make_view(self._context.views), "sample_view", colour="particle")
         self._camera = CameraLink([self.frame.view])
         self._place()
         self._connect()

@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtGui import QStandardItemModel
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QPushButton, QSizePolicy, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
@@ -25,7 +25,7 @@ from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.jobs.scan_jobs import FirstLook, Scan
 from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.region import RegionSettings
-from regolith_studio.ui.layout import Collapsible, named, vbox
+from regolith_studio.ui.layout import Collapsible, hbox, named, vbox
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.fields import ChoiceBox, DecimalField
@@ -287,26 +287,21 @@ class WorkflowPanel(QWidget):
         )
         self.show_them = button("scan_show", tr("Show particles"), tr("Go to the table of particles"))
         self.volume, self.made = _words(), _words()
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
         kept = self.show_them.sizePolicy()
         kept.setRetainSizeWhenHidden(True)  # the button beside it stays as wide
         self.show_them.setSizePolicy(kept)
-        for title, buttons, result in (
-            (tr("1  Volume"), (self.browse, self.sample), FixedHeightText((self.volume,))),
-            (tr("2  Grains"), (self.save,), self.card),
-            (tr("3  Particles"), (self.convert, self.show_them), FixedHeightText((self.made,))),
-        ):
-            layout.addWidget(heading(title))
-            row = QHBoxLayout()
-            for each in buttons:
-                row.addWidget(each)
-            if result is self.card:
-                layout.addWidget(result)
-                layout.addLayout(row)
-            else:
-                layout.addLayout(row)
-                layout.addWidget(result)
+        vbox(
+            heading(tr("1  Volume")),
+            hbox(self.browse, self.sample),
+            FixedHeightText((self.volume,)),
+            heading(tr("2  Grains")),
+            self.card,
+            self.save,
+            heading(tr("3  Particles")),
+            hbox(self.convert, self.show_them),
+            FixedHeightText((self.made,)),
+            parent=self,
+        )
 
     def show_state(
         self,

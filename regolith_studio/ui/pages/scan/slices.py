@@ -23,7 +23,7 @@ from regolith_studio.scene.surfaces import show_grains
 from regolith_studio.ui.layout import STRETCH, equal_parts, named, vbox
 from regolith_studio.ui.pages.scan.slice_view import SliceView, colours_of_labels
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush, BrushPanel
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, tr, tr_count
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
@@ -152,7 +152,7 @@ class GrainsView:
     """
 
     def __init__(self, views: str) -> None:
-        self.frame = ViewFrame(make_view(views, current_theme().surroundings), "grains_view")
+        self.frame = ViewFrame(make_view(views), "grains_view")
         self._camera = CameraLink([self.frame.view])
         self._size = np.ones(3)
 
