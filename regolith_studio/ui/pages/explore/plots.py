@@ -5,9 +5,8 @@ from collections.abc import Mapping, Sequence
 from itertools import accumulate, chain, pairwise
 
 import numpy as np
-import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QPointF, Qt
-from PySide6.QtGui import QColor, QResizeEvent
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
     QSplitter,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.cross_section import CrossSection
 from regolith_studio.harmonics.coefficients import power_spectrum
 from regolith_studio.messages import N_
@@ -29,13 +29,13 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.layout import STRETCH, hbox, named, tabs, vbox
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import localized, number_text, tr, translate
+from regolith_studio.ui.translation import number_text, tr, translate
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.heat_table import numbers_table
 from regolith_studio.ui.widgets.labels import grouped_number, plain_symbol, short_number
-from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
-from regolith_studio.ui.widgets.plots.base import Numbers, Plot
+from regolith_studio.ui.widgets.plots.bars import AmplitudePlot, BarPlot, BarSeries
+from regolith_studio.ui.widgets.plots.base import Numbers
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.table import FontRowHeight, definition
 
@@ -233,23 +233,13 @@ DECADES = 6.5
 """Range of the axis below the highest bar."""
 
 
-class SpectrumPlot(Plot):
-    """Amplitudes with tool tips."""
+class SpectrumPlot(AmplitudePlot):
+    """Amplitudes of a fit."""
 
-    shares: np.ndarray[tuple[int], np.dtype[np.float64]] = np.empty(0)
-
-    def value_at(self, place: QPointF) -> str:
-        degree = round(self.canvas.getViewBox().mapSceneToView(place).x())
-        return (
-            localized(f"l = {degree}: {self.shares[degree - 1]:.3g} %")
-            if 1 <= degree <= len(self.shares)
-            else ""
-        )
+    percents: FloatArray = np.empty(0)
 
     def numbers(self) -> Numbers:
-        return ("l", tr("amplitude [%]")), [
-            (degree, float(share)) for degree, share in enumerate(self.shares, start=1)
-        ]
+        return ("l", tr("amplitude [%]")), list(enumerate(self.percents.tolist(), start=1))
 
 
 class SpectrumPanel(QWidget):
@@ -259,12 +249,10 @@ class SpectrumPanel(QWidget):
         super().__init__()
         self.setObjectName("spectrum")
         self.plot = SpectrumPlot(
-            tr("Degree l"),
             tr("Amplitude √A<sub>l</sub> / c<sub>00</sub> [%]"),
             tr("The spectrum appears when the particle is fitted."),
         )
         vbox(self.plot, parent=self)
-        self._items: list[pg.BarGraphItem] = []
         self._shown: tuple[Results, Choices] | None = None
 
     def show_results(self, results: Results, choices: Choices) -> None:
@@ -272,46 +260,20 @@ class SpectrumPanel(QWidget):
         self.plot.set_empty(results.fit is None)
         if results.fit is None:
             return
-        shares = 100.0 * power_spectrum(results.fit.coefficients).relative_amplitudes[1:]
-        self.plot.shares = shares
-        self._draw(np.log10(np.maximum(shares, 1e-12)), choices.l_max)
-        theme = self.plot.theme
+        shares = self.plot.percents = 100.0 * power_spectrum(results.fit.coefficients).relative_amplitudes[1:]
+        theme, known = self.plot.theme, np.arange(1, len(shares) + 1) <= choices.l_max
+        logs = np.log10(np.maximum(shares, 1e-12))
+        top = math.ceil(float(logs.max()) * 2 + 0.2) / 2
+        floor = max(top - DECADES, math.floor(float(logs.min())))
+        parts = [(np.where(known, shares, np.nan), 0.72, theme.fit)]
+        parts.append((np.where(known, np.nan, shares), 0.72, theme.border))
+        self.plot.draw_bars(parts, floor, top)
         kept = tr("up to l<sub>max</sub> = {l_max}", l_max=choices.l_max)
         self.plot.set_legend([(theme.fit, kept), (theme.border, tr("above l<sub>max</sub>"))])
 
     def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         if self._shown:
             self.show_results(*self._shown)
-
-    def _draw(self, logs: np.ndarray[tuple[int], np.dtype[np.float64]], l_max: int) -> None:
-        for item in self._items:
-            self.plot.canvas.removeItem(item)
-        top = math.ceil(float(logs.max()) * 2 + 0.2) / 2
-        floor = max(top - DECADES, math.floor(float(logs.min())))
-        degrees = np.arange(1, len(logs) + 1)
-        self._items = []
-        for kept, colour in (
-            (degrees <= l_max, self.plot.theme.fit),
-            (degrees > l_max, self.plot.theme.border),
-        ):
-            heights = np.maximum(logs[kept] - floor, 0.0)
-            bars = pg.BarGraphItem(
-                x=degrees[kept],
-                y0=floor,
-                height=heights,
-                width=0.72,
-                brush=QColor(colour),
-                pen=pg.mkPen(None),
-            )
-            self.plot.canvas.addItem(bars)
-            self._items.append(bars)
-        decades = range(math.ceil(floor), math.floor(top) + 1)
-        self.plot.canvas.getAxis("left").setTicks(
-            [[(decade, number_text(10.0**decade, "g")) for decade in decades]]
-        )
-        self.plot.canvas.setRange(
-            xRange=(0.3, len(logs) + 0.7), yRange=(floor, top), padding=0.0, disableAutoRange=True
-        )
 
 
 AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}

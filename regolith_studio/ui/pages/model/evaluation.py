@@ -43,7 +43,8 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.forms import enter_values, field_values
 from regolith_studio.ui.widgets.heat_table import centred_hint
-from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, unbroken, with_subscripts
+from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, with_subscripts
+from regolith_studio.ui.widgets.plots.base import legend_text
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 MIN_WIDTH, MIN_HEIGHT = 190, 180
@@ -115,12 +116,7 @@ class PanelGrid(QWidget):
             plot.set_labels(*self._labels(panel, study))
             plot.set_curves([self._curve(curve, study) for curve in panel.curves])
             entries |= {curve.label: curve.colour for curve in plot.curves}
-        self.legend.setText(
-            "&nbsp;&nbsp; ".join(
-                f'<span style="color:{colour}">&#9632;</span>&nbsp;{unbroken(label)}'
-                for label, colour in entries.items()
-            )
-        )
+        self.legend.setText(legend_text((colour, label) for label, colour in entries.items()))
 
     def _curve(self, curve: PopulationCurve, study: PopulationStudy) -> PlotCurve:
         theme = current_theme()

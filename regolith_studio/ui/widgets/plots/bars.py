@@ -179,7 +179,54 @@ LOG_MIN, LOG_MAX = -3.0, 1.8
 KEY_FACTOR = 1.1
 
 
-class SpectrumEditor(Plot):
+class AmplitudePlot(Plot):
+    """Bars of amplitudes over their degree l = 1, 2, ..., on a logarithmic scale of per cent."""
+
+    def __init__(self, y: str, placeholder: str) -> None:
+        self._bars: list[pg.BarGraphItem] = []
+        super().__init__(tr("Degree l"), y, placeholder)
+
+    @property
+    def percents(self) -> NDArray[np.float64]:
+        """The amplitudes in per cent, shape (l_max,)."""
+        raise NotImplementedError
+
+    def draw_bars(
+        self, series: Sequence[tuple[NDArray[np.float64], float, str]], low: float, high: float
+    ) -> None:
+        """Draw per cents, NaN for none, with width and colour of their bars, between two powers of ten."""
+        for item in self._bars:
+            self.canvas.removeItem(item)
+        self._bars = []
+        degrees = np.arange(1, len(self.percents) + 1)
+        for values, width, colour in series:
+            heights = np.log10(np.maximum(np.nan_to_num(values), 1e-12)) - low
+            bars = pg.BarGraphItem(
+                x=degrees,
+                y0=low,
+                height=np.clip(heights, 0.0, high - low),
+                width=width,
+                brush=QColor(colour),
+                pen=pg.mkPen(None),
+            )
+            self.canvas.addItem(bars)
+            self._bars.append(bars)
+        decades = range(math.ceil(low), math.floor(high) + 1)
+        self.canvas.getAxis("left").setTicks(
+            [[(decade, number_text(10.0**decade, "g")) for decade in decades]]
+        )
+        ends = (0.3, len(degrees) + 0.7)
+        self.canvas.setRange(xRange=ends, yRange=(low, high), padding=0.0, disableAutoRange=True)
+
+    def value_at(self, place: QPointF) -> str:
+        degree = round(self.canvas.getViewBox().mapSceneToView(place).x())
+        return self.words_of(degree) if 1 <= degree <= len(self.percents) else ""
+
+    def words_of(self, degree: int) -> str:
+        return localized(f"l = {degree}: {self.percents[degree - 1]:.3g} %")
+
+
+class SpectrumEditor(AmplitudePlot):
     """Bars of sqrt(A_l) / mu in per cent, l = 1, 2, ...; edited by dragging or by the arrow keys.
 
     ``valueChanged`` is emitted for changes by the user only.
@@ -193,8 +240,7 @@ class SpectrumEditor(Plot):
         self._fitted: NDArray[np.float64] = np.empty(0)
         self._editable = False
         self._chosen = 0
-        self._items: list[pg.BarGraphItem] = []
-        super().__init__(tr("Degree l"), tr("Amplitude √A<sub>l</sub> / μ [%]"), placeholder)
+        super().__init__(tr("Amplitude √A<sub>l</sub> / μ [%]"), placeholder)
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
         self._timer.timeout.connect(self._emit_value)
         self._due = False
@@ -233,50 +279,22 @@ class SpectrumEditor(Plot):
             self.editingFinished.emit()
 
     def redraw(self) -> None:
-        for item in self._items:
-            self.canvas.removeItem(item)
-        self._items = []
         if not len(self._values):
             return
-        degrees = np.arange(1, len(self._values) + 1)
-        for values, width, colour in (
-            (self._fitted, 0.86, self.theme.border),
-            (self._values, 0.62, self.theme.fit),
-        ):
-            heights = np.log10(np.maximum(100 * values, 1e-12)) - LOG_MIN
-            bars = pg.BarGraphItem(
-                x=degrees,
-                y0=LOG_MIN,
-                height=np.clip(heights, 0.0, LOG_MAX - LOG_MIN),
-                width=width,
-                brush=QColor(colour),
-                pen=pg.mkPen(None),
-            )
-            self.canvas.addItem(bars)
-            self._items.append(bars)
-        self._draw_axes(len(degrees))
-
-    def _draw_axes(self, count: int) -> None:
-        decades = range(math.ceil(LOG_MIN), math.floor(LOG_MAX) + 1)
-        self.canvas.getAxis("left").setTicks(
-            [[(decade, number_text(10.0**decade, "g")) for decade in decades]]
-        )
+        fitted, changed = 100 * self._fitted, self.percents
+        series = [(fitted, 0.86, self.theme.border), (changed, 0.62, self.theme.fit)]
+        self.draw_bars(series, LOG_MIN, LOG_MAX)
+        count = len(changed)
         step = 1 if count <= 15 else 5
         self.canvas.getAxis("bottom").setTicks(
             [[(d, str(d)) for d in range(1, count + 1) if d % step == 0 or d == 1]]
         )
-        self.canvas.setRange(
-            xRange=(0.3, count + 0.7), yRange=(LOG_MIN, LOG_MAX), padding=0.0, disableAutoRange=True
-        )
         entries = [(self.theme.fit, tr("drag the bars") if self._editable else tr("as fitted"))]
         self.set_legend([*entries, (self.theme.border, tr("as fitted"))] if self.is_changed() else entries)
 
-    def value_at(self, place: QPointF) -> str:
-        seen = self.canvas.getViewBox().mapSceneToView(place)
-        degree = round(seen.x())
-        if not 1 <= degree <= len(self._values):
-            return ""
-        return localized(f"l = {degree}: {100 * self._values[degree - 1]:.3g} %")
+    @property
+    def percents(self) -> NDArray[np.float64]:
+        return 100 * self._values
 
     def numbers(self) -> Numbers:
         rows: list[tuple[str | float, ...]] = [
@@ -310,7 +328,7 @@ class SpectrumEditor(Plot):
             super().keyPressEvent(event)
         elif event.key() in steps:
             self._chosen = (self._chosen + steps[Qt.Key(event.key())]) % len(self._values)
-            self.set_hint(self._words())
+            self.set_hint(self.words_of(self._chosen + 1))
         elif event.key() in factors:
             self._put(float(self._values[self._chosen]) * factors[Qt.Key(event.key())])
             self._finish()
@@ -329,11 +347,8 @@ class SpectrumEditor(Plot):
 
     def _put(self, value: float) -> None:
         self._values[self._chosen] = np.clip(value, 10.0 ** (LOG_MIN - 2), 10.0 ** (LOG_MAX - 2))
-        self.set_hint(self._words())
+        self.set_hint(self.words_of(self._chosen + 1))
         self._changed()
-
-    def _words(self) -> str:
-        return localized(f"l = {self._chosen + 1}: {100 * self._values[self._chosen]:.3g} %")
 
     def _changed(self) -> None:
         self.redraw()

@@ -372,6 +372,13 @@ def fit_text(text: str, font: QFont, width: float) -> tuple[str, float]:
     return text, smaller.pointSizeF()
 
 
+def legend_text(entries: Iterable[tuple[str, str]]) -> str:
+    """A square in each colour and what it stands for, rich text."""
+    return "&nbsp;&nbsp; ".join(
+        f'<span style="color:{colour}">&#9632;</span>&nbsp;{unbroken(text)}' for colour, text in entries
+    )
+
+
 Numbers = tuple[tuple[str, ...], list[tuple[str | float, ...]]]
 """Column names, and rows."""
 READABLE_LINES = 11
@@ -458,12 +465,7 @@ class Plot(QWidget):
     def set_legend(self, entries: list[tuple[str, str]]) -> None:
         """Set the entries of the legend, pairs of colour and rich text."""
         self._legend_entries = entries
-        self.legend.setText(
-            "&nbsp;&nbsp; ".join(
-                f'<span style="color:{colour}">&#9632;</span>&nbsp;{unbroken(text)}'
-                for colour, text in entries
-            )
-        )
+        self.legend.setText(legend_text(entries))
         self._make_room()
 
     def set_labels(self, x: str, y: str) -> None:
