@@ -15,11 +15,14 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.particles import LoadedParticles
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
 from regolith_studio.ui.appearance import FONT_SIZE
 from regolith_studio.ui.dialogs.files import FolderDialog
+from regolith_studio.ui.pages.sample import PAGE
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.widgets.labels import short_number
@@ -33,11 +36,23 @@ def window(sample_window):
 
 
 @pytest.fixture
-def page(window, wait):
-    made = window.go("sample")
-    wait(lambda: len(made.table.particles.rows) == 12)
-    wait(lambda: all(entry.descriptors for entry in made.table.particles.rows))
-    return made
+def page(page_of, wait):
+    """The page alone over the shipped particles, coarsened fast."""
+    session = Session(InlineRunner(), Choices(method="quadric", level=2, l_max=4))
+    session.open_sample()
+    return measured(page_of(PAGE, 1200, 760, session), wait)
+
+
+@pytest.fixture
+def page_in_window(window, wait):
+    return measured(window.go("sample"), wait)
+
+
+def measured(page, wait):
+    """The page once it shows the descriptors of all particles."""
+    wait(lambda: len(page.table.particles.rows) == 12)
+    wait(lambda: all(entry.descriptors for entry in page.table.particles.rows))
+    return page
 
 
 def choose(page, *names):
@@ -48,7 +63,8 @@ def choose(page, *names):
             table.selectionModel().select(table.model().index(row, 0), flags.Select | flags.Rows)
 
 
-def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window, page, wait):
+def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window, page_in_window, wait):
+    page = page_in_window
     row = next(r for r, entry in enumerate(page.table.particles.rows) if entry.id == "flat-1")
     place = page.table.visualRect(page.table.model().index(row, 0)).center()
     QTest.mouseClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
@@ -58,8 +74,8 @@ def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window
     wait(lambda: window.page.particles.value() == {"selected": "flat-1"})
 
 
-def test_that_the_view_says_what_its_colours_mean_while_they_are_shown(window, page, wait):
-    window.session.select("agglutinate-1")
+def test_that_the_view_says_what_its_colours_mean_while_they_are_shown(page, wait):
+    page.session.select("agglutinate-1")
     wait(lambda: "hidden from the star point (" in page.frame.detail.text())
     page.health.where.click()
     assert page.frame.detail.text().endswith("triangles")
@@ -97,10 +113,10 @@ def test_that_several_rows_are_ringed_in_the_plot_and_counted_alone(page):
 
 
 @pytest.mark.slow
-def test_that_a_point_of_the_plot_chooses_its_row(window, page):
+def test_that_a_point_of_the_plot_chooses_its_row(page):
     page.scatter.pointChosen.emit("angular-2", False)
     assert page.table.chosen() == ["angular-2"]
-    assert window.session.choices.selected == "angular-2"
+    assert page.session.choices.selected == "angular-2"
     page.scatter.pointChosen.emit("bead-1", True)
     assert page.table.chosen() == ["angular-2", "bead-1"]
 
@@ -132,11 +148,11 @@ def test_that_the_exported_table_has_the_rows_that_are_seen_with_units(page, tmp
 
 
 @pytest.mark.slow
-def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
+def test_that_only_the_chosen_particles_can_be_kept(page, wait):
     page.table.choose([])
     choose(page, "bead-1", "bead-2")
     page.keep_selected_particles()
-    assert [entry.id for entry in window.session.particles] == ["bead-1", "bead-2"]
+    assert [entry.id for entry in page.session.particles] == ["bead-1", "bead-2"]
     wait(lambda: len(page.table.particles.rows) == 2)
 
 
@@ -245,11 +261,11 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
 
 
 @pytest.mark.slow
-def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(window, page, wait):
+def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(window, page_in_window, wait):
     usual = QApplication.font().pointSizeF()
 
     def sizes():
-        words = [each for each in page.scatter._items if isinstance(each, pg.TextItem)]
+        words = [each for each in page_in_window.scatter._items if isinstance(each, pg.TextItem)]
         return {each.textItem.font().pointSizeF() for each in words}
 
     for letters in (200, 100):
@@ -296,20 +312,20 @@ def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
     plot.set_theme(plot.theme)
 
 
-def test_that_a_part_of_an_archive_is_called_one_as_long_as_it_is_shown(page, window, settled):
+def test_that_a_part_of_an_archive_is_called_one_as_long_as_it_is_shown(page, wait):
     sentence = "Shown is a random part of the archive: 1,000 of 84,311, seed 0."
-    whole = LoadedParticles(window.session.open_particles)
-    window.session._replace_particles(replace(whole, left_out=(sentence,)))
-    settled(window)
+    whole = LoadedParticles(page.session.open_particles)
+    page.session._replace_particles(replace(whole, left_out=(sentence,)))
+    wait(lambda: page.context.bindings.idle)
     assert page.assessment.isVisibleTo(page)
     assert page.assessment.text() == sentence
     page.filter.setText("S<")
     assert "All particles are shown." in page.assessment.text()
     page.filter.setText("")
     assert page.assessment.text() == sentence
-    window.session._replace_particles(whole, add=True)
-    settled(window)
+    page.session._replace_particles(whole, add=True)
+    wait(lambda: page.context.bindings.idle)
     assert page.assessment.text() == sentence
-    window.session._replace_particles(whole)
-    settled(window)
+    page.session._replace_particles(whole)
+    wait(lambda: page.context.bindings.idle)
     assert not page.assessment.isVisibleTo(page)

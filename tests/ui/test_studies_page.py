@@ -12,16 +12,20 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from regolith_studio.errors import FileError
+from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.jobs.uncertainty_chain import Chain
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.studies import write_studies
+from regolith_studio.session.session import Session
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import best_row, sufficient_facets
 from regolith_studio.studies.uncertainty import OUTPUTS, AngleBudget, ChainStep
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.studies.budget import _angle_rows
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.result_card import ResultRecord, ResultState
+from regolith_studio.ui.startup import MainThreadInvoker
 from regolith_studio.ui.theme import DARK
 from tests.jobs.test_uncertainty import ellipsoids
 
@@ -35,11 +39,17 @@ def paper_names():
 
 
 @pytest.fixture
-def window(window, wait):
-    window.session.adopt([entry.particle for entry in window.session.particles[:2]])
-    window.session.choose(method="quadric", n_facets=12, level=2, l_max=4)
-    wait(lambda: not window.session.tasks, SECONDS)
-    return window
+def window(shown, preferences, settled, pictures_on_request):  # noqa: ARG001
+    """A window on two ellipsoids, coarsened fast."""
+    poster = MainThreadInvoker()
+    choices = Choices(target="fit", method="quadric", n_facets=12, level=2, l_max=4)
+    session = Session(ThreadRunner(poster.post), choices)
+    session.adopt(ellipsoids(2))
+    made = MainWindow(session, preferences, "image")
+    poster.setParent(made)
+    made.resize(1100, 720)
+    settled(shown(made), SECONDS)
+    return made
 
 
 def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
