@@ -24,6 +24,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from bootstrap import virtual_display
 from regolith_studio.jobs.runners import InlineRunner
+from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import Preferences
@@ -32,7 +33,7 @@ from regolith_studio.ui import main_window
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.startup import make_application, open_window
+from regolith_studio.ui.startup import MainThreadInvoker, make_application, open_window
 from regolith_studio.ui.translation import install_translators, remove_translators
 from regolith_studio.ui.views.image_view import ImageView
 from regolith_studio.ui.widgets.formula import all_outlines
@@ -221,6 +222,26 @@ def page_of(shown, preferences, pictures_on_request):  # noqa: ARG001
     yield build
     while ends:
         ends.pop()()
+
+
+@pytest.fixture
+def dialog_runs(shown, preferences):
+    """Makes the runs of a dialog over a session with threads, in a bare window."""
+    ends = []
+
+    def make(kind, choices=None):
+        window, poster = shown(QWidget()), MainThreadInvoker()
+        session = Session(ThreadRunner(poster.post), choices or Choices())
+        toast = Toast(window)
+        bindings = Bindings(session, toast.problem, window)
+        made = kind(session, preferences, toast, window)
+        bindings.refresh("tasks", made.show_tasks)
+        ends.extend((bindings.disconnect_all, session.close, poster.close))
+        return made
+
+    yield make
+    for end in ends:
+        end()
 
 
 def _settle():

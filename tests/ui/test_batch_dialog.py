@@ -4,20 +4,14 @@ import contextlib
 from pathlib import Path
 
 import pytest
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.executor import Executor, ExecutorSettings
 from regolith_studio.jobs.runners import dask_cluster
-from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.recipe import Outputs, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
-from regolith_studio.session.session import Session
 from regolith_studio.ui.batch_runs import BatchRuns
-from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.dialogs.batch import BatchDialog
-from regolith_studio.ui.startup import MainThreadInvoker
-from regolith_studio.ui.widgets.toast import Toast
 
 WISH = recipe_of(
     inputs=[],
@@ -42,18 +36,9 @@ def dialog(shown, tmp_path):
 
 
 @pytest.fixture
-def batches(shown, preferences):
-    """Batches of an empty session, in a bare window."""
-    window, poster = shown(QWidget()), MainThreadInvoker()
-    session = Session(ThreadRunner(poster.post))
-    toast = Toast(window)
-    bindings = Bindings(session, toast.problem, window)
-    made = BatchRuns(session, preferences, toast, window)
-    bindings.refresh("tasks", made.show_tasks)
-    yield made
-    bindings.disconnect_all()
-    session.close()
-    poster.close()
+def batches(dialog_runs):
+    """Batches of an empty session."""
+    return dialog_runs(BatchRuns)
 
 
 def filled(batches, recipe, folder, place):

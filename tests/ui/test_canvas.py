@@ -4,10 +4,9 @@ import numpy as np
 import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import QSize
-from PySide6.QtWidgets import QApplication, QCheckBox, QMenu, QSpinBox
+from PySide6.QtWidgets import QApplication
 
 from regolith_studio.ui.widgets.plots.base import CANVAS_MARGIN, LAST_LABEL, CountAxis, FittedAxis, PlotCanvas
-from regolith_studio.ui.widgets.plots.curves import CurvePlot
 
 STEPS = np.arange(1.0, 9.0)
 
@@ -48,8 +47,9 @@ def shot(canvas, follows):
     return canvas.grab().toImage()
 
 
-@pytest.mark.parametrize("log", [False, True])
-@pytest.mark.parametrize("act", ["follows", "is set", "is locked"])
+@pytest.mark.parametrize(
+    ("act", "log"), [("follows", False), ("follows", True), ("is set", True), ("is locked", False)]
+)
 def test_that_the_same_is_drawn_as_by_the_widget_of_pyqtgraph(shown, log, act):
     pictures, ranges = [], []
     for canvas in (shown(theirs()), shown(PlotCanvas(axes()))):
@@ -82,9 +82,3 @@ def test_that_what_is_removed_is_seen_no_longer_and_what_never_was_there_does_no
     canvas.removeItem(curve)
     canvas.removeItem(pg.PlotDataItem(STEPS, STEPS))
     assert curve.scene() is None
-
-
-def test_that_a_plot_carries_no_form_of_options(shown):
-    plot = shown(CurvePlot("x", "y", "nothing yet"))
-    assert not [each for each in plot.canvas.scene().items() if isinstance(each, pg.PlotItem)]
-    assert not [each for each in QApplication.allWidgets() if isinstance(each, QMenu | QCheckBox | QSpinBox)]

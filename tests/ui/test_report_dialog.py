@@ -4,23 +4,17 @@ import threading
 from pathlib import Path
 
 import pytest
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.events import Progress
-from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.report import write
 from regolith_studio.session.report.sections import ReportSection
 from regolith_studio.session.report.settings import ReportSettings
-from regolith_studio.session.session import Session
 from regolith_studio.ui.batch_runs import ReportRuns
-from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.dialogs.batch import ReportDialog
-from regolith_studio.ui.startup import MainThreadInvoker
 from regolith_studio.ui.widgets.plots.base import plain_text
-from regolith_studio.ui.widgets.toast import Toast
 
 HELD = threading.Event()
 
@@ -49,22 +43,14 @@ def sections(monkeypatch):
 
 
 @pytest.fixture
-def reports(shown, preferences, wait, tmp_path, monkeypatch):
-    """Reports on the sample, in a bare window."""
+def reports(dialog_runs, wait, tmp_path, monkeypatch):
+    """Reports on the sample."""
     monkeypatch.setenv("HOME", str(tmp_path))
-    window, poster = shown(QWidget()), MainThreadInvoker()
-    session = Session(ThreadRunner(poster.post), Choices(method="quadric", seed=7))
-    session.open_sample()
-    wait(lambda: session.particles and not session.tasks)
-    toast = Toast(window)
-    bindings = Bindings(session, toast.problem, window)
-    made = ReportRuns(session, preferences, toast, window)
-    bindings.refresh("tasks", made.show_tasks)
+    made = dialog_runs(ReportRuns, Choices(method="quadric", seed=7))
+    made._session.open_sample()
+    wait(lambda: made._session.particles and not made._session.tasks)
     yield made
     HELD.set()
-    bindings.disconnect_all()
-    session.close()
-    poster.close()
 
 
 def asked(reports):
