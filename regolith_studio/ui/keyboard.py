@@ -32,7 +32,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.layout import dialog_buttons, hbox, named, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, hint_label
-from regolith_studio.ui.widgets.table import TextTable
+from regolith_studio.ui.widgets.text_table import TextTable
 
 FOCUSED = "focused"
 """Property that the style sheet asks for; parts around a widget that have it are framed with it."""

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.ui.layout import named
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, localized, tr
-from regolith_studio.ui.widgets.table import FontRowHeight
+from regolith_studio.ui.widgets.text_table import FontRowHeight
 
 _MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2
 """Limits of the vertical header's width as a share of the width of the table."""

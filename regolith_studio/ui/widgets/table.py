@@ -1,4 +1,4 @@
-"""Tables with a row for each particle: columns, model and view, tips of descriptors; and tables of texts."""
+"""Tables with a row for each particle: columns, model and view, tips of descriptors."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -8,17 +8,14 @@ from typing import Any
 
 from PySide6.QtCore import (
     QAbstractTableModel,
-    QEvent,
     QItemSelectionModel,
     QModelIndex,
     QObject,
     QPersistentModelIndex,
-    QSignalBlocker,
     Qt,
     Signal,
 )
-from PySide6.QtGui import QKeyEvent, QPixmap, QResizeEvent, QShowEvent, QStandardItem, QStandardItemModel
-from PySide6.QtWidgets import QAbstractItemView, QTableView
+from PySide6.QtGui import QKeyEvent, QPixmap, QResizeEvent
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, Descriptor
@@ -36,6 +33,7 @@ from regolith_studio.session.sample_table import (
 from regolith_studio.ui.theme import Theme, current_theme, pixmap
 from regolith_studio.ui.translation import inert, number_text, tr, translate
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
+from regolith_studio.ui.widgets.text_table import RIGHT, FittedTable
 
 EQUATIONS = {"sphericity": 1, "aspect_ratio": 2, JACCARD: 7}
 """Numbers in the paper, by key."""
@@ -60,7 +58,6 @@ def definition(key: str) -> str:
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 UNSORTED = -1
-RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 HEALTH, GROUP, FORM, WEIGHT = "health", "group", "form", "weight"
 """Keys of columns."""
 HEALTH_WORDS = (*(N_("sound"), N_("coarse"), N_("repaired"), N_("doubtful"), N_("unsound"), N_("unknown")),)
@@ -286,65 +283,11 @@ class ParticleTableModel(QAbstractTableModel):
         self.layoutChanged.emit()
 
 
-class FontRowHeight(QObject):
-    """Keeps the row height of a table that of its font.
-
-    ``spare``: additional pixels of a row.
-    """
-
-    def __init__(self, table: QTableView, spare: int) -> None:
-        super().__init__(table)
-        self._table, self._spare, self._lines = table, spare, 1
-        table.installEventFilter(self)
-        self._fit()
-
-    def set_lines(self, lines: int) -> None:
-        self._lines = lines
-        self._fit()
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.FontChange:
-            self._fit()
-        return super().eventFilter(watched, event)
-
-    def _fit(self) -> None:
-        height = self._lines * self._table.fontMetrics().height() + self._spare
-        rows = self._table.verticalHeader()
-        if rows.defaultSectionSize() != height:
-            rows.setDefaultSectionSize(height)
-
-
 MEASURED = 100
 """Number of visible rows whose contents determine the width of columns."""
 
 
-class _FittedTable(QTableView):
-    """A table of rows whose columns are as wide as their contents in the font that it is shown in."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.setShowGrid(False)
-        self.setTabKeyNavigation(False)
-        self.setWordWrap(False)
-        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of a sample differ at their end
-        self.verticalHeader().hide()
-        FontRowHeight(self, 9)
-        self.horizontalHeader().setHighlightSections(False)
-        self.horizontalHeader().setStretchLastSection(True)
-
-    def showEvent(self, event: QShowEvent) -> None:
-        super().showEvent(event)
-        self.resizeColumnsToContents()  # the style sheet's font is known only now
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange:
-            self.resizeColumnsToContents()
-
-
-class ParticleTable(_FittedTable):
+class ParticleTable(FittedTable):
     """The particles, sorted by a click on a header; emits which rows are selected and which one is current.
 
     Groups are listed where there are two, weights where one differs from 1. Columns are as wide as their
@@ -471,55 +414,3 @@ class ParticleTable(_FittedTable):
     def _announce_current(self, index: QModelIndex) -> None:
         if not self._quiet and index.isValid():
             self.currentChosen.emit(self.particles.rows[index.row()].id)
-
-
-class TextTable(_FittedTable):
-    """Rows of texts; ``chosen`` carries the number of the row that the user has selected.
-
-    ``name``, ``spoken``: object name and accessible name. ``headings``: of the columns. ``numbers``: texts
-    are aligned right but for the first column.
-    """
-
-    chosen = Signal(int)
-
-    def __init__(self, name: str, spoken: str, headings: Sequence[str], *, numbers: bool = True) -> None:
-        super().__init__()
-        self._numbers = numbers
-        self.setObjectName(name)
-        self.setAccessibleName(spoken)
-        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        if not numbers:
-            self.horizontalHeader().setDefaultAlignment(Qt.AlignmentFlag.AlignLeft)
-        self.rows = QStandardItemModel(0, len(headings), self)
-        self.rows.setHorizontalHeaderLabels(list(headings))
-        self.setModel(self.rows)
-        self.selectionModel().selectionChanged.connect(self._announce)
-
-    def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str]) -> None:
-        with QSignalBlocker(self.selectionModel()):
-            self.rows.setRowCount(0)
-            for texts, tip in zip(rows, tips, strict=True):
-                items = [QStandardItem(text) for text in texts]
-                for column, item in enumerate(items):
-                    item.setToolTip(inert(tip))
-                    if column and self._numbers:
-                        item.setData(RIGHT, Qt.ItemDataRole.TextAlignmentRole)
-                self.rows.appendRow(items)
-        self.resizeColumnsToContents()
-
-    def selected(self) -> int | None:
-        rows = self.selectionModel().selectedRows()
-        return rows[0].row() if rows else None
-
-    def select(self, row: int | None) -> None:
-        """Select a row, or none, without emitting a signal."""
-        with QSignalBlocker(self.selectionModel()):
-            if row is None:
-                self.clearSelection()
-            else:
-                self.selectRow(row)
-        self.viewport().update()
-
-    def _announce(self) -> None:
-        if (row := self.selected()) is not None:
-            self.chosen.emit(row)

@@ -37,7 +37,8 @@ from regolith_studio.ui.widgets.labels import grouped_number, plain_symbol, shor
 from regolith_studio.ui.widgets.plots.bars import AmplitudePlot, BarPlot, BarSeries
 from regolith_studio.ui.widgets.plots.base import Numbers
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.table import FontRowHeight, definition
+from regolith_studio.ui.widgets.table import definition
+from regolith_studio.ui.widgets.text_table import FontRowHeight
 
 COLUMNS = (N_("Particle"), N_("Fit"), N_("Polyhedron"))
 NARROW_COLUMNS = (N_("Particle"), N_("Fit"), N_("Solid"))

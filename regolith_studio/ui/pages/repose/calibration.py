@@ -43,7 +43,7 @@ from regolith_studio.ui.translation import localized, number_text, tr, tr_count,
 from regolith_studio.ui.widgets.fields import NumbersLine, choice, decimal_field, whole_field
 from regolith_studio.ui.widgets.forms import enter_values, field_values
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.table import TextTable
+from regolith_studio.ui.widgets.text_table import TextTable
 
 
 class RunPanel(QWidget):

@@ -16,7 +16,7 @@ from regolith_studio.ui.layout import vbox
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.fields import choice
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.table import TextTable
+from regolith_studio.ui.widgets.text_table import TextTable
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     N_("Static friction"): ("case", "contact", "static_friction"),

@@ -47,7 +47,7 @@ from regolith_studio.ui.widgets.forms import (
 )
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, hint_label
 from regolith_studio.ui.widgets.presets import PresetForm
-from regolith_studio.ui.widgets.table import TextTable
+from regolith_studio.ui.widgets.text_table import TextTable
 
 RELIABLE_ACROSS = 20.0
 """Particles across the cylinder from which walls and single particles do not matter."""

@@ -44,13 +44,8 @@ from regolith_studio.ui.translation import localized, number_text, rich, tr, tra
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
 from regolith_studio.ui.widgets.labels import FixedHeightText, WrappedLabel, heading, hint_label, short_number
-from regolith_studio.ui.widgets.table import (
-    FORM_WORDS,
-    HEALTH_WORDS,
-    FontRowHeight,
-    ParticleTable,
-    particle_columns,
-)
+from regolith_studio.ui.widgets.table import FORM_WORDS, HEALTH_WORDS, ParticleTable, particle_columns
+from regolith_studio.ui.widgets.text_table import FontRowHeight
 
 FINDINGS = (
     ("bodies", N_("Connected parts"), N_("Connected parts of the surface; a particle has one")),

@@ -45,7 +45,8 @@ from regolith_studio.ui.widgets.forms import enter_values, field_values, on_chan
 from regolith_studio.ui.widgets.labels import hint_label, plain_symbol, rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.table import FontRowHeight, TextTable, definition
+from regolith_studio.ui.widgets.table import definition
+from regolith_studio.ui.widgets.text_table import FontRowHeight, TextTable
 
 ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")

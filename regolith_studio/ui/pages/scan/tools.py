@@ -34,7 +34,7 @@ from regolith_studio.ui.pages.scan.controls import button
 from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec, choice
 from regolith_studio.ui.widgets.labels import heading, hint_label
-from regolith_studio.ui.widgets.table import TextTable
+from regolith_studio.ui.widgets.text_table import TextTable
 
 CLASSES = (
     PixelClass("background", False),

@@ -27,7 +27,7 @@ from regolith_studio.ui.result_card import ResultRecord, RunController
 from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.fields import choice
 from regolith_studio.ui.widgets.labels import grouped_number, hint_label
-from regolith_studio.ui.widgets.table import TextTable
+from regolith_studio.ui.widgets.text_table import TextTable
 
 POINTS = (4, 8, 16, 32, 64)
 MAX_HEAPS = 100

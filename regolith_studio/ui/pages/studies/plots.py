@@ -39,7 +39,8 @@ from regolith_studio.ui.widgets.heat_table import (
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.plots.base import Numbers, plain_text
 from regolith_studio.ui.widgets.plots.curves import HOVER_DISTANCE, CurvePlot, PlotCurve
-from regolith_studio.ui.widgets.table import FontRowHeight, definition
+from regolith_studio.ui.widgets.table import definition
+from regolith_studio.ui.widgets.text_table import FontRowHeight
 
 Values = tuple[float, ...]
 
