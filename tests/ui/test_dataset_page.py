@@ -122,6 +122,8 @@ def test_that_the_curve_falls_and_the_slider_chooses_among_its_points(chosen, wa
     assert sum(shares) == pytest.approx(100, abs=0.5)
     assert shares == sorted(shares, reverse=True)
     assert chosen.representatives.count.slider.maximum() == 8
+    listed = [chosen.gallery.list.item(row) for row in range(7)]
+    wait(lambda: not any(item.icon().isNull() for item in listed))
 
 
 def test_that_captions_of_representatives_are_whole_in_a_larger_font_too(shown) -> None:
