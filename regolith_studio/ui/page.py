@@ -4,7 +4,7 @@ import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from PySide6.QtCore import QEvent, QMargins, QObject, QRegularExpression, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QKeySequence, QResizeEvent
@@ -78,6 +78,13 @@ MIN_VIEW = 8, 3
 """Parts of width and height of a window that a 3-D view has at least."""
 
 
+class ValuePanel(Protocol):
+    """A panel whose values are plain JSON."""
+
+    def value(self) -> dict[str, Any]: ...
+    def setValue(self, value: Mapping[str, Any]) -> None: ...
+
+
 class PageWidget(QWidget):
     """Base class of pages; every method may be overridden."""
 
@@ -104,9 +111,13 @@ class PageWidget(QWidget):
         """One sentence on what closing would lose or stop, or nothing; tasks need not be named."""
         return ""
 
+    def panels(self) -> Mapping[str, ValuePanel]:
+        """Panels of what is set on this page alone, by their names in :meth:`settings`."""
+        return {}
+
     def settings(self) -> dict[str, Any]:
         """The part of :meth:`state` that undo takes back: what is set on this page alone."""
-        return {}
+        return {name: panel.value() for name, panel in self.panels().items()}
 
     def step(self, name: str) -> Callable[[], None] | None:  # noqa: ARG002
         """What ``undo`` or ``redo`` does before all else while this page is seen, if there is something."""
@@ -118,6 +129,9 @@ class PageWidget(QWidget):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Show what :meth:`state` returned once, maybe by another version: ignore what is not known."""
+        for name, panel in self.panels().items():
+            if isinstance(state.get(name), Mapping):
+                panel.setValue(state[name])
 
     def resume(self, state: Mapping[str, Any]) -> None:
         """Show again what was made of the particles, which are open now; after :meth:`restore`."""

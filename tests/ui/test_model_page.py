@@ -413,7 +413,7 @@ def test_that_a_project_keeps_the_file_of_a_model_and_draws_from_no_other_where_
     page.source.choose_source("ma165")
     page.fit_model()
     write_model(tmp_path / "own.json", page._model)
-    page.add_source(tmp_path / "own.json")
+    page.open_path(tmp_path / "own.json")
     state = page.state() | {"made": {"fitted": True, "drawn": True}}
     again = opened()
     again.restore(state)

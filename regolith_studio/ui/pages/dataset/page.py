@@ -49,7 +49,7 @@ from regolith_studio.ui.layout import (
     tabs,
     vbox,
 )
-from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.page import PageContext, PageWidget, ValuePanel
 from regolith_studio.ui.pages.dataset.controls import (
     DatasetControls,
     FolderPanel,
@@ -130,13 +130,11 @@ class DatasetPage(PageWidget):
             "export": self.export,
         }
 
+    def panels(self) -> Mapping[str, ValuePanel]:
+        return {"representatives": self.representatives, "export": self.targets}
+
     def settings(self) -> dict[str, Any]:
-        return {
-            "representatives": self.representatives.value(),
-            "sizes": self.sizes.text(),
-            "name": self.folder.name.text(),
-            "export": self.targets.value(),
-        }
+        return super().settings() | {"sizes": self.sizes.text(), "name": self.folder.name.text()}
 
     def state(self) -> dict[str, Any]:
         made: dict[str, Any] = {"found": True} if self._survey is not None else {}
@@ -176,9 +174,7 @@ class DatasetPage(PageWidget):
         self._context.start(tr("Reading the dataset"), job, take, queue=BUILD, repeats=True)
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        for name, panel in (("representatives", self.representatives), ("export", self.targets)):
-            if isinstance(state.get(name), Mapping):
-                panel.setValue(state[name])
+        super().restore(state)
         self.sizes.set_text(str(state.get("sizes", "measured")))
         self.folder.name.setText(str(state.get("name", "regolith")))
 

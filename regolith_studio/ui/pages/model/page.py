@@ -42,7 +42,7 @@ from regolith_studio.shape_models.models import MODELS, write_model
 from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.layout import FoldingSplitter, hbox, padded, scrolled_column, stacked, tabs
-from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.page import PageContext, PageWidget, ValuePanel
 from regolith_studio.ui.pages.model.controls import (
     DistributionsPanel,
     DrawControls,
@@ -283,12 +283,8 @@ class ModelPage(PageWidget):
             "save_card": self.save_card,
         }
 
-    def settings(self) -> dict[str, Any]:
-        return {
-            "source": self.source.value(),
-            "drawing": self.drawing.value(),
-            "evaluation": self.evaluation.value(),
-        }
+    def panels(self) -> Mapping[str, ValuePanel]:
+        return {"source": self.source, "drawing": self.drawing, "evaluation": self.evaluation}
 
     def state(self) -> dict[str, Any]:
         made = {"fitted": self._fitted is not None, "drawn": self._drawn is not None}
@@ -315,13 +311,7 @@ class ModelPage(PageWidget):
             for problem in self._sources.restore({str(key): str(path) for key, path in files.items()}):
                 self._context.toast.problem(problem)
             self._show_sources()
-        for name, panel in (
-            ("source", self.source),
-            ("drawing", self.drawing),
-            ("evaluation", self.evaluation),
-        ):
-            if isinstance(state.get(name), Mapping):
-                panel.setValue(state[name])
+        super().restore(state)
         chosen = str(dict(state.get("source") or {}).get("source"))
         is_unread = chosen in self._sources.paths and chosen not in self._sources.labels()
         self._unread = (chosen, state.get("made") or {}) if is_unread else None
@@ -336,14 +326,11 @@ class ModelPage(PageWidget):
         """Ask for a fit, model or card and select it."""
         name, _ = QFileDialog.getOpenFileName(self, tr("Open a fit, model or card"), "", tr(SOURCE_FILTER))
         if name:
-            self.add_source(Path(name))
-
-    def add_source(self, path: Path) -> None:
-        """Select a fit, model or card in a file."""
-        self._try(lambda: self._add(read_shape_source(str(path)), path))
+            self.open_path(Path(name))
 
     def open_path(self, path: Path) -> None:
-        self.add_source(path)
+        """Select a fit, model or card in a file."""
+        self._try(lambda: self._add(read_shape_source(str(path)), path))
 
     def fit_model(self) -> None:
         """Fit the selected model to the selected sample, or take the model of the source."""
