@@ -20,7 +20,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait, workers)
     small(page, dataset)
     panel = page.study
     panel.workers.setMaximum(2)  # also on a machine of one core
-    panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1, "workers": workers})
+    panel.setValue({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1, "workers": workers})
     page.studies.start()
     wait(lambda: panel.table.rows.rowCount() == 2)
     wait(lambda: panel.card.record.state is ResultState.CURRENT)
@@ -62,7 +62,7 @@ def test_that_a_study_says_what_it_lacks(page, dataset):
     page.studies.start()
     assert "open particles" in page._context.toast.sentence.text()
     small(page, dataset)
-    page.study.restore({"key": "gravity", "values": "moon", "repeats": 2})
+    page.study.setValue({"key": "gravity", "values": "moon", "repeats": 2})
     page.studies.start()
     assert "numbers with commas" in page._context.toast.sentence.text()
 
@@ -155,12 +155,12 @@ def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, m
 @pytest.mark.slow
 def test_that_a_calibration_runs_and_goes_on_in_its_folder(page, dataset, wait):
     small(page, dataset)
-    page.calibration.restore({"angle": 25.0, "runs": 2})
+    page.calibration.setValue({"angle": 25.0, "runs": 2})
     page.calibrations.start()
     wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
     (folder,) = (page._folder / "studies").iterdir()
     before = (folder / "run_01" / "repose.json").stat().st_mtime_ns
-    page.calibration.restore(page.state()["calibration"] | {"angle": 27.0})
+    page.calibration.setValue(page.state()["calibration"] | {"angle": 27.0})
     page.calibrations.start()
     wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
     assert (folder / "run_01" / "repose.json").stat().st_mtime_ns == before
@@ -183,6 +183,6 @@ def test_that_a_calibration_says_what_it_lacks(page, dataset):
         ("0.2", "lowest and highest value"),
         ("1, 0.2", "from a lower to a higher value"),
     ):
-        page.calibration.restore({"key": "static_friction", "range": words})
+        page.calibration.setValue({"key": "static_friction", "range": words})
         page.calibrations.start()
         assert sentence in page._context.toast.sentence.text()

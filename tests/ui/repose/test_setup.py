@@ -182,13 +182,13 @@ def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(setup, data
     assert setup.gravity.currentText() == "Other"
     setup.set_dataset(dataset)
     setup.seed.setValue(7)
-    kept = json.loads(json.dumps(setup.state()))
+    kept = json.loads(json.dumps(setup.value()))
     setup.seed.setValue(0)
     setup.test.setValue(LiftingCylinderTest())
-    setup.restore(kept)
+    setup.setValue(kept)
     request = setup.request()
     assert (request.case.seed, request.case.test.gravity) == (7, 5.0)
-    setup.restore({"test": {"gravity": "heavy"}, "unknown": 1})
+    setup.setValue({"test": {"gravity": "heavy"}, "unknown": 1})
     assert setup.request().case == request.case
 
 
@@ -204,11 +204,11 @@ def test_that_a_drum_has_its_own_cylinder_and_an_engine_that_turns_it(setup):
     assert setup.measured_angle() == (38.0, 1.0)
     with pytest.raises(RegolithError, match="lift a cylinder"):
         setup.request_of_series()
-    kept = json.loads(json.dumps(setup.state()))
+    kept = json.loads(json.dumps(setup.value()))
     setup.apparatus.setCurrentIndex(0)
     setup.measured.setValue(0.0)
     assert setup.request().case.test == LiftingCylinderTest(mass=0.01, wall_friction=0.5)
-    setup.restore(kept)
+    setup.setValue(kept)
     assert setup.request().case == request.case
     assert setup.measured_angle() == (38.0, 1.0)
 
@@ -219,10 +219,10 @@ def test_that_each_engine_has_its_own_numerics(setup):
     assert setup.request().engine == "lammps"
     setup.numerics.setValue({"spheres": 3})
     assert setup.request().settings.spheres == 3
-    kept = setup.state()
+    kept = setup.value()
     setup.engine.setCurrentIndex(setup.engine.findData("mujoco"))
     setup.numerics.setValue({})
-    setup.restore(kept)
+    setup.setValue(kept)
     assert setup.request().settings.spheres == 3
     setup.engine.setCurrentIndex(setup.engine.findData("mujoco"))
     assert setup.request().settings.time_step == 0.01

@@ -83,13 +83,13 @@ class RunPanel(QWidget):
         for field in self._fields.values():
             field.setEnabled(not running)
 
-    def state(self) -> dict[str, Any]:
+    def value(self) -> dict[str, Any]:
         """The values as plain JSON."""
         return field_values(self._fields)
 
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Show what :meth:`state` returned; unknown values are ignored."""
-        enter_values(self._fields, state)
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show what :meth:`value` returned; unknown values are ignored."""
+        enter_values(self._fields, value)
 
 
 class SeriesController:

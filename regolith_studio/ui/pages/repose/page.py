@@ -35,7 +35,7 @@ from regolith_studio.session.project import fingerprint
 from regolith_studio.studies.repose import ReposeStudyRun
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs, vbox
-from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.page import PageContext, PageWidget, ValuePanel
 from regolith_studio.ui.pages.repose.calibration import (
     CalibrationController,
     CalibrationPanel,
@@ -155,12 +155,8 @@ class ReposePage(PageWidget):
     def busy(self) -> str:
         return self.run.busy() or self.studies.run.busy() or self.calibrations.run.busy()
 
-    def settings(self) -> dict[str, Any]:
-        return {
-            "setup": self.setup.state(),
-            "study": self.study.state(),
-            "calibration": self.calibration.state(),
-        }
+    def panels(self) -> Mapping[str, ValuePanel]:
+        return {"setup": self.setup, "study": self.study, "calibration": self.calibration}
 
     def state(self) -> dict[str, Any]:
         shown = self._shown_run
@@ -174,9 +170,7 @@ class ReposePage(PageWidget):
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        for name, panel in (("setup", self.setup), ("study", self.study), ("calibration", self.calibration)):
-            if isinstance(state.get(name), Mapping):
-                panel.restore(state[name])
+        super().restore(state)
         if isinstance(followed := state.get("followed"), str):  # which is not made anew by being opened
             self._followed = (Path(followed), time_written(Path(followed)))
         if state.get("calibrated") is True:

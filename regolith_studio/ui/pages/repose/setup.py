@@ -372,7 +372,7 @@ class SetupPanel(QWidget):
             return tr("There is no dataset yet: open or build one first.")
         return "" if self.problem.isHidden() else self.problem.text()
 
-    def state(self) -> dict[str, Any]:
+    def value(self) -> dict[str, Any]:
         """The values as plain JSON."""
         return {
             **field_values(self._fields),
@@ -386,27 +386,27 @@ class SetupPanel(QWidget):
             "dataset_by_hand": self._by_hand,
         }
 
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Show what :meth:`state` returned; invalid values are ignored."""
-        self.apparatus.choose(state.get("apparatus"))  # first: it changes values of the test
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show what :meth:`value` returned; invalid values are ignored."""
+        self.apparatus.choose(value.get("apparatus"))  # first: it changes values of the test
         try:
-            self.test.restore(state.get("test", {}))
-            self.drum.setValue(state.get("drum", {}))
-            for field, value in zip(
-                (self.measured, self.measured_error), state.get("measured", ()), strict=False
+            self.test.restore(value.get("test", {}))
+            self.drum.setValue(value.get("drum", {}))
+            for field, number in zip(
+                (self.measured, self.measured_error), value.get("measured", ()), strict=False
             ):
-                field.setValue(float(value))
-            self.contact.restore(state.get("contact", {}))
-            self.evaluation.setValue(state.get("evaluation", {}))
+                field.setValue(float(number))
+            self.contact.restore(value.get("contact", {}))
+            self.evaluation.setValue(value.get("evaluation", {}))
             self._limit_particles()
             for key, form in self._numerics.items():
-                form.setValue(state.get("numerics", {}).get(key, {}))
+                form.setValue(value.get("numerics", {}).get(key, {}))
         except (InputError, TypeError, ValueError, AttributeError):
             return
-        enter_values(self._fields, state)
-        folder = state.get("dataset")
+        enter_values(self._fields, value)
+        folder = value.get("dataset")
         if folder and Path(str(folder)).is_dir():
-            self.set_dataset(Path(str(folder)), state.get("dataset_by_hand") is True)
+            self.set_dataset(Path(str(folder)), value.get("dataset_by_hand") is True)
 
     def _place(self) -> None:
         presets = [
