@@ -471,6 +471,7 @@ def test_that_the_card_of_the_draws_says_that_a_model_is_being_fitted_and_why_it
 
 def test_that_add_or_replace_is_asked_before_particles_are_made(page, monkeypatch):
     order, answers = [], ["", "replace"]
+    monkeypatch.setattr(page.session._live, "follow", lambda *_: None)  # no fit, no polyhedron
     take(page, rough_sample())
     page.drawing.number.setValue(3)
     page.draw()

@@ -28,6 +28,12 @@ GERMAN = read_translations(TRANSLATIONS)
 FORMATTER = string.Formatter()
 
 
+@pytest.fixture(scope="module")
+def parsed():
+    """The syntax tree of each module, by its path."""
+    return {path: ast.parse(path.read_text("utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
+
+
 def test_that_every_text_of_the_window_is_translated(tmp_path):
     path = Path(shutil.copy(TRANSLATIONS, tmp_path))
     update(path)
@@ -42,12 +48,10 @@ def test_that_the_compiled_translations_are_up_to_date(speaking):
     assert {text: tr(text) for text in GERMAN} == GERMAN, "run python -m tools.update_translations"
 
 
-def test_that_no_text_is_translated_inside_an_f_string():
+def test_that_no_text_is_translated_inside_an_f_string(parsed):
     """lupdate does not look into them."""
-    for path in sorted(PACKAGE.rglob("*.py")):
-        strings = [
-            node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.JoinedStr)
-        ]
+    for path, tree in parsed.items():
+        strings = [node for node in ast.walk(tree) if isinstance(node, ast.JoinedStr)]
         calls = [node for each in strings for node in ast.walk(each) if isinstance(node, ast.Call)]
         hidden = [each for each in calls if getattr(each.func, "id", "") in ("tr", "N_")]
         assert not [each for each in hidden if isinstance(each.args[0], ast.Constant)], path
@@ -139,10 +143,10 @@ def _literal(node: ast.expr) -> str | None:
     return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
 
 
-def _mismatches(path: Path) -> list[str]:
+def _mismatches(path: Path, tree: ast.Module) -> list[str]:
     """Calls whose keywords are not the placeholders of their template."""
     found = []
-    for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for call in ast.walk(tree):
         name = call.func.id if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) else ""
         if name not in ("tr", "tr_count", "Message", "count_message"):
             continue
@@ -158,5 +162,5 @@ def _mismatches(path: Path) -> list[str]:
     return found
 
 
-def test_that_every_placeholder_of_a_text_is_given_its_value() -> None:
-    assert [each for path in sorted(PACKAGE.rglob("*.py")) for each in _mismatches(path)] == []
+def test_that_every_placeholder_of_a_text_is_given_its_value(parsed):
+    assert [each for path, tree in parsed.items() for each in _mismatches(path, tree)] == []
