@@ -13,7 +13,7 @@ from regolith_studio.imaging.segmentation.strokes import Stroke
 from regolith_studio.imaging.volume import sample_file
 from regolith_studio.readers.volumes.read import read_volume
 from tests.ui.scan.mouse import paint, press
-from tests.ui.test_guide_pictures import DRIFT, IMAGES, drift, steady, window  # noqa: F401
+from tests.ui.test_guide_pictures import DRIFT, IMAGES, drift, pictures_on_request, steady, window  # noqa: F401
 
 SECONDS = 170.0
 PLACE = (40, 90, 81)
