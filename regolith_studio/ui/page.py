@@ -472,7 +472,10 @@ class PageStack(QWidget):
         """Give borders their places back in a smaller font: parts that a large one has widened stay so."""
         if font_size() < self._font_sizes[key]:
             widget = self.widgets[key]  # whose parts ask for less room once they have taken the font
-            QTimer.singleShot(0, widget, lambda: restore_borders(widget))
+            timer = QTimer(widget, singleShot=True)  # a call that is due would keep a page that is deleted
+            timer.timeout.connect(lambda: restore_borders(widget))
+            timer.timeout.connect(timer.deleteLater)
+            timer.start(0)
         self._font_sizes[key] = font_size()
 
     def _hide_current(self) -> None:
