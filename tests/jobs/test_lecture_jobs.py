@@ -5,12 +5,14 @@ import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.describe import describe, relative_errors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial
-from regolith_studio.jobs.lecture_jobs import draw_field, trace_annealing, trace_degrees
+from regolith_studio.jobs.lecture_jobs import BALLS, draw_field, trace_annealing, trace_degrees
 from regolith_studio.shape_models.materials import materials
 from tests.steps import played
 
@@ -88,6 +90,15 @@ def test_that_the_fit_grows_from_a_sphere_to_the_particle(egg):
     assert steps[0].errors["sphericity"] > 10 * steps[8].errors["sphericity"]
     assert steps[8].errors["volume"] < 1e-2
     assert steps[0].radial_error > steps[4].radial_error > steps[8].radial_error
+
+
+def test_that_the_balls_of_a_fit_have_the_sides_of_the_least_box(egg):
+    fit = fit_harmonics(egg, 8)
+    truth = describe(egg, LOSS_KEYS)
+    _, steps = results_of(trace_degrees(egg, fit, level=3))
+    for step in steps[: BALLS + 1]:
+        exact = relative_errors(truth, describe(step.mesh, LOSS_KEYS), LOSS_KEYS)
+        assert dict(step.errors) == pytest.approx(exact, abs=2e-3)  # of 1,280 triangles
 
 
 def test_that_a_field_has_the_spectrum_that_was_asked_for():
