@@ -19,7 +19,7 @@ from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.evaluation.profile import Discs, Profile, base_level, connected_tops, project
 from regolith_studio.dem.evaluation.section import Line, NotAPileError, fit_asymmetric, fit_symmetric
 from regolith_studio.errors import InputError
-from regolith_studio.studies.figures.repose import framed
+from regolith_studio.studies.figures.repose import framed, section_figure
 from tests.dem.packings import cone, packing
 
 
@@ -316,3 +316,21 @@ def test_that_the_interval_of_a_rough_heap_contains_the_tilt_of_its_surface() ->
     lines = dataclasses.replace(section.asymmetric, left=left, right=right, break_point=0.0)
     rough = dataclasses.replace(section, profile=profile, used=np.full(len(u), True), asymmetric=lines)
     assert rough_tilt([rough]) == pytest.approx(np.degrees(0.3 * 0.2 / 10.0 * 0.75), rel=1e-3)
+
+
+def test_that_the_figure_shows_the_surface_of_a_section_without_two_flanks() -> None:
+    points = 1e-3 * cone(30, 1000, 1)
+    diameters = np.full(len(points), 1e-3)
+    found = measure_repose(points, diameters)
+    found = dataclasses.replace(
+        found, sections=tuple(each for each in found.sections if each.azimuth != 90.0)
+    )
+    whole, other = section_figure(points, diameters, found).axes
+    assert other.get_title() == "y-z: no two straight flanks, so no angle"
+    surface = other.lines[0].get_xydata()
+    assert len(surface) > 10
+    assert surface[:, 1].max() == pytest.approx(whole.lines[0].get_ydata().max(), rel=0.3)
+    (left, right), (bottom, top) = other.get_xlim(), other.get_ylim()
+    assert left < surface[:, 0].min() < surface[:, 0].max() < right
+    assert bottom == 0.0
+    assert surface[:, 1].max() < top < 2 * surface[:, 1].max()

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
-from regolith_studio.dem.evaluation.profile import project
+from regolith_studio.dem.evaluation.profile import Profile, project, surface_profile
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
@@ -190,23 +190,28 @@ LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
 
 
 def section_figure(points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement) -> Figure:
-    """The x-z and y-z sections; positions and diameters in metres."""
+    """The x-z and y-z sections, of one without two flanks its surface; positions and diameters in metres."""
     figure = Figure(figsize=(10.5, 3.2), layout="constrained")
-    axes = figure.subplots(1, 2, sharey=True)
+    axes, tops = figure.subplots(1, 2, sharey=True), []
     for axis, plane, azimuth in zip(axes, ("x-z", "y-z"), PAPER_AZIMUTHS, strict=True):
         section = measurement.section_at(azimuth)
         axis.set_xlabel(f"{plane[0]} (mm)")
+        _draw_particles(axis, points, diameters, measurement.base, azimuth)
         if section is None:
-            axis.set_title(f"{plane}: no two flanks")
-            continue
-        _draw_particles(axis, points, diameters, measurement, section)
-        _draw_fits(axis, section)
-        axis.set_title(
-            f"{plane}: {section.asymmetric.left.angle:.1f}° | {section.asymmetric.right.angle:.1f}°"
-        )
-        reach, top = framed(section)
+            profile = _profile(points, diameters, measurement, azimuth)
+            u, z = MILLIMETRE * profile.u, MILLIMETRE * profile.height
+            axis.plot(u[z > 0.0], z[z > 0.0], "o", color="0.15", markersize=3)
+            axis.set_title(f"{plane}: no two straight flanks, so no angle")
+            reach, top = framed_profile(profile)
+        else:
+            _draw_fits(axis, section)
+            axis.set_title(
+                f"{plane}: {section.asymmetric.left.angle:.1f}° | {section.asymmetric.right.angle:.1f}°"
+            )
+            reach, top = framed(section)
         axis.set_xlim(-MILLIMETRE * reach, MILLIMETRE * reach)
-        axis.set_ylim(0.0, MILLIMETRE * top)
+        tops.append(MILLIMETRE * top)
+    axes[0].set_ylim(0.0, max(tops))
     axes[0].set_ylabel("z (mm)")
     handles, labels = max((axis.get_legend_handles_labels() for axis in axes), key=lambda each: len(each[1]))
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
@@ -231,6 +236,12 @@ def framed(section: Section) -> tuple[float, float]:
     return min(1.15 * reach, STEEP_REACH * heap), 1.1 * max(two.apex[1], one.apex[1])
 
 
+def framed_profile(profile: Profile) -> tuple[float, float]:
+    """The same of a surface to which nothing could be fitted."""
+    ends = profile.u[[profile.first, profile.last]]
+    return 1.15 * float(np.abs(ends).max()), 1.1 * profile.top
+
+
 def write_section_figure(
     points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement, folder: Path
 ) -> tuple[Path, Path]:
@@ -238,10 +249,18 @@ def write_section_figure(
     return write_figure(section_figure(points, diameters, measurement), folder, "sections")
 
 
+def _profile(
+    points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement, azimuth: float
+) -> Profile:
+    mean, settings = measurement.mean_diameter, measurement.settings
+    discs = project(points, diameters, measurement.base, np.radians(azimuth), settings.slab * mean)
+    return surface_profile(discs, mean, settings)
+
+
 def _draw_particles(
-    axis: Axes, points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement, section: Section
+    axis: Axes, points: FloatArray, diameters: FloatArray, base: float, azimuth: float
 ) -> None:
-    discs = project(points, diameters, measurement.base, np.radians(section.azimuth))
+    discs = project(points, diameters, base, np.radians(azimuth))
     widths = 2 * MILLIMETRE * discs.radius
     grains = EllipseCollection(
         widths,

@@ -17,7 +17,7 @@ from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.messages import N_
-from regolith_studio.studies.figures.repose import framed
+from regolith_studio.studies.figures.repose import framed, framed_profile
 from regolith_studio.ui.layout import STRETCH, hbox, vbox
 from regolith_studio.ui.pages.repose.setup import CaseScale
 from regolith_studio.ui.result_card import ResultRecord, ResultState
@@ -61,8 +61,7 @@ class HeapSection:
         if self.section is not None:
             return framed(self.section)
         if self.profile is not None:
-            ends = self.profile.u[[self.profile.first, self.profile.last]]
-            return 1.15 * float(np.abs(ends).max()), 1.1 * self.profile.top
+            return framed_profile(self.profile)
         flat = self.pile.points[:, :2] - np.median(self.pile.points[:, :2], axis=0)
         reach = np.quantile(np.abs(flat), 0.97) + self.pile.diameters.mean()
         return 1.15 * float(reach), 1.1 * float((self.pile.points[:, 2] - self.base).max())
