@@ -362,6 +362,37 @@ def test_that_a_case_of_hundreds_of_particles_is_stated_too(page):
     assert len(page.distribution.classes) == 300
 
 
+def test_that_the_proposed_factor_is_taken_with_its_decimals_and_suffices(page, monkeypatch) -> None:
+    """A factor of 3.1 that was cut to 3 left 506,500 particles, and 3.1 was proposed again."""
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: "")
+    ball = icosphere(3).moved(scale=43.9)
+    page._particles = (Particle("ball", ball), Particle("other", ball))
+    page._show_sizes()
+    assert "are too many" in page.targets.preview.text()
+    assert page.targets.enlarge.text() == "Export with coarse graining 3.1 …"
+    page.targets._take_sufficient_factor()
+    assert page.targets.options().coarse_graining_factor == 3.1
+    assert page.targets.coarse_graining.field.text() == "3.1"
+    assert "are too many" not in page.targets.preview.text()
+    assert page.targets.enlarge.isHidden()
+    page.targets.coarse_graining.field.stepUp()
+    assert page.targets.options().coarse_graining_factor == 4.1
+    page.targets.setValue({"coarse_graining": 2.25})
+    assert page.targets.value()["coarse_graining"] == 2.25
+    assert page.targets.coarse_graining.field.text() == "2.25"
+
+
+def test_that_a_choice_by_volume_does_not_change_the_number_stated_before_it_is_made(page) -> None:
+    """All particles count as one each until there are classes with a share of the volume."""
+    page._particles = tuple(Particle(f"ball-{k}", icosphere(0).moved(scale=20.0 + 10 * k)) for k in range(4))
+    page._show_sizes()
+    by_number = page.targets.preview.text()
+    page.representatives.weighting.setValue("volume")
+    page._show_sizes()
+    assert page.representatives.request().weighting == "volume"
+    assert page.targets.preview.text() == by_number
+
+
 @pytest.mark.slow
 def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
     chosen.session.adopt(grains(5, first=30))

@@ -320,6 +320,13 @@ class NumberSlider(QWidget):
             self.slider.setValue(self._ticks(self.field.value()))
         self._emitted = self.field.value()
 
+    def step_by(self, step: float) -> None:
+        """Let arrows and keys change the number by more than its smallest step, whose zeros are not shown."""
+        if isinstance(self.field, DecimalField):
+            self.field.pads = False
+            self.field.setSingleStep(step)
+        self.slider.setSingleStep(self._ticks(step))
+
     def set_range(self, minimum: float, maximum: float) -> None:
         """Set the range of slider and field without emitting a signal."""
         with QSignalBlocker(self.field), QSignalBlocker(self.slider):

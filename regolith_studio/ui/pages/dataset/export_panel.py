@@ -46,6 +46,7 @@ COARSE_GRAINING = NumberSpec(
     N_("Coarse-graining factor"),
     1,
     20,
+    0.01,
     limit=1000,
     tip=N_("1 keeps the size of the particles; 10 makes them ten times larger."),
 )
@@ -69,6 +70,7 @@ class ExportPanel(QWidget):
         self.boxes = {key: self._box(key) for key in EXPORTERS}
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
         self.coarse_graining.field.setObjectName("dataset_coarse_graining")
+        self.coarse_graining.step_by(1)
         self.particles.field.setObjectName("dataset_particles")
         self.contact = PresetForm(ContactParameters, "export_contact", tr("Published contact parameters"))
         self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Published cylinder"))

@@ -454,7 +454,8 @@ class DatasetPage(PageWidget):
             return cylinder_filling(self._dataset.class_weights("number").tolist(), sizes, options)
         classes = self._classes_to_build
         weights = np.array([one.weight for one in classes])
-        if self.representatives.request().weighting == "volume" and not self.representatives.every:
+        by_classes = self._chosen is not None and not self.representatives.every
+        if by_classes and self.representatives.request().weighting == "volume":
             weights /= [one.sizes.mean_cube() for one in classes]
         return cylinder_filling(weights.tolist(), [one.sizes for one in classes], options)
 
