@@ -202,6 +202,9 @@ def show_recovery_and_tour(window: "MainWindow") -> None:
     """Offer what a crash has left; start the tour at the first start, when there is something to see."""
     from regolith_studio.ui.dialogs.help import TOUR_SEEN
 
+    if QApplication.activeModalWidget() is not None:  # asks for the unit of files that were given
+        QTimer.singleShot(FILLED_CHECK, window, lambda: show_recovery_and_tour(window))
+        return
     window.projects.offer_recovery()
     if window.preferences.window.get(TOUR_SEEN):
         return

@@ -9,7 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QMessageBox
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QDialog, QMessageBox
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -20,10 +21,11 @@ from regolith_studio.session import project
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.session import Session
+from regolith_studio.ui.dialogs.help import TOUR_SEEN
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.scan.corrections import CorrectionState
 from regolith_studio.ui.project_files import CopyLock, autosave_path, stale_autosaves
-from regolith_studio.ui.startup import open_window
+from regolith_studio.ui.startup import FILLED_CHECK, open_window, show_recovery_and_tour
 
 WORK = """
 from regolith_studio.ui import project_files
@@ -97,6 +99,20 @@ def test_that_what_is_brought_back_is_kept_until_there_is_a_newer_copy(shown, pr
     wait(lambda: not newer.exists())
     assert read_project(autosave_path()).recipe.n_facets == 33
     assert stale_autosaves() == [older], "nobody was asked about it"
+
+
+@pytest.mark.usefixtures("left")
+def test_that_a_recovery_is_offered_after_the_question_that_is_open(shown, preferences, wait):
+    preferences.window = {TOUR_SEEN: True}
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    unit = QDialog(window)
+    unit.open()
+    show_recovery_and_tour(window)
+    QTest.qWait(2 * FILLED_CHECK)
+    assert window.findChild(QMessageBox, "recovery") is None
+    unit.close()
+    wait(lambda: window.findChild(QMessageBox, "recovery") is not None)
+    window.findChild(QMessageBox, "recovery").close()
 
 
 def test_that_the_next_crash_is_offered_where_the_first_is_declined(shown, preferences, left):
