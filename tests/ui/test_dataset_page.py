@@ -192,25 +192,22 @@ def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(p
     assert "parts" not in page.gallery.shown[0].caption
 
 
-def test_that_a_format_of_convex_particles_is_refused_before_compounds_exist(chosen, tmp_path, wait) -> None:
+def test_that_compounds_are_refused_where_they_are_built_and_not_before(chosen, tmp_path, wait) -> None:
     chosen.targets.setValue({"targets": ["rocky", "hoomd"]})
-    assert chosen.targets.export.isEnabled()
     chosen.session.choose(method="compound")
-    wait(lambda: not chosen.targets.export.isEnabled())
-    assert "HOOMD-blue (shape JSON) cannot hold the compounds" in chosen.targets.export.toolTip()
-    assert chosen.targets.recipe_part() is None
-    chosen.export()
-    assert chosen._dataset is None
-    assert chosen._context.toast.sentence.text() == chosen.targets.export.toolTip()
+    wait(lambda: "ompound" in chosen.folder.shapes.text())
+    assert chosen.targets.export.isEnabled(), "its polyhedra may be convex"
+    assert chosen.targets.recipe_part() is not None
+    dataset = build_dataset([elbow_entry()], name="elbows")
+    chosen._take_dataset(write_dataset(tmp_path / "set", dataset), dataset)
+    assert not chosen.targets.export.isEnabled()
+    chosen.export_to(tmp_path / "out")  # as after a build
+    wait(lambda: chosen.result.record.state is ResultState.FAILED)
+    assert "HOOMD-blue (shape JSON) cannot hold" in chosen.result.record.note
+    assert chosen._dataset is dataset
+    assert not (tmp_path / "out").exists()
     chosen.targets.boxes["hoomd"].setChecked(False)
     assert chosen.targets.export.isEnabled()
-    chosen.targets.boxes["hoomd"].setChecked(True)
-    chosen.session.choose(method="quadric")
-    wait(chosen.targets.export.isEnabled)
-    chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen._dataset is not None)
-    chosen.session.choose(method="compound")
-    wait(lambda: not chosen.targets.export.isEnabled())
 
 
 def test_that_the_rows_of_many_exports_are_as_high_as_their_buttons(page, tmp_path) -> None:

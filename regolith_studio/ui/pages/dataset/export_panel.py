@@ -152,7 +152,7 @@ class ExportPanel(QWidget):
         return self.lossy.isChecked()
 
     def set_ready(self, reason: str, compounds: bool = False) -> None:
-        """Set why nothing can be exported, or nothing, and whether the dataset holds compounds, or will."""
+        """Set why nothing can be exported, or nothing, and whether the dataset holds compounds."""
         self._reason, self._compounds = reason, compounds
         self._show()
 

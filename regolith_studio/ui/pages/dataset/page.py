@@ -35,7 +35,6 @@ from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.messages import N_
 from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import DatasetRequest
-from regolith_studio.session.study_requests import COMPOUND
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import (
     FoldingSplitter,
@@ -405,9 +404,8 @@ class DatasetPage(PageWidget):
             reason = tr("There are too few particles to choose from: open two or more.")
         if self._is_current():
             reason = ""
-        compounds = self._context.session.choices.method == COMPOUND  # it may make them
-        if self._dataset is not None and self._is_current():
-            compounds = bool(self._dataset.compounds)
+        # before it is built, nobody knows: the result of the method of compounds may be convex
+        compounds = self._dataset is not None and self._is_current() and bool(self._dataset.compounds)
         # first, since each change shows the filling again, and without classes there is none
         self.targets.show_filling(self._filling if self._dataset or self._classes_to_build else None)
         self.targets.set_ready(reason, compounds)
