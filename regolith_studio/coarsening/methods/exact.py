@@ -19,9 +19,9 @@ from regolith_studio.messages import N_
 class ExactSettings:
     """Effort of the exact method.
 
-    Two starts, up to three more where these differ (``fast``), or ten more, the better half of which go on
-    after 30 steps, and the best three to the end (``best``: better overlap). Where none keeps what is to be
-    kept, so many further starts: `retries`.
+    One start (``fast``), or ten more, the better half of which go on after 30 steps, and the best three to
+    the end (``best``: better overlap). Where none keeps what is to be kept, so many further starts:
+    `retries`.
     """
 
     level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(EFFORTS)})

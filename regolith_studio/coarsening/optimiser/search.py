@@ -71,9 +71,8 @@ corners are passed over; the later ones where a single cut fails. The second whe
 that: their corners must leave room for cuts across the corners that they make."""
 CUT_ROUNDS, CUT_STEPS, CUT_RADIUS = 40, 8, 0.05
 """Attempts to put facets back, steps of each, and their longest moves at first."""
-FURTHER_STARTS = 3
-"""Where all is kept, but a half-space bounds no facet or the best two differ by more than the next factor."""
 SPREAD = 1.03
+"""Two starts whose distances differ by no more count as alike."""
 BOX_EVERY = 3
 """Of starts beyond those of the effort every third has the sides of the box, for particles that nearly fill
 it."""
@@ -83,14 +82,20 @@ WORD_LENGTH = 2.0**-40
 
 @dataclass(frozen=True)
 class SearchEffort:
-    """Starts, how many of the best come to rest, and how many of each size go on after a race; 0: all."""
+    """Starts, how many of the best come to rest, and how many of each size go on after a race; 0: all.
+
+    `further` starts follow where all is kept, but a half-space bounds no facet or the best two are not alike.
+    """
 
     starts: int
     finalists: int
     raced: int = 0
+    further: int = 0
 
 
-EFFORTS = {"fast": SearchEffort(2, 1), "best": SearchEffort(10, 3, raced=5)}
+EFFORTS = {"fast": SearchEffort(1, 1), "best": SearchEffort(10, 3, raced=5, further=3)}
+MORE = SearchEffort(5, 1)
+"""Where the least effort keeps all, but a smaller box is found then, or a half-space bounds no facet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +200,7 @@ class Search:
         self._judge = LossFunction(target, weights, everything=True)
         if keeps and sphericity_reason(target.descriptors["sphericity"], n_facets):
             self._plan = tuple((kind, n_facets) for kind in ROUND_STARTS)
-            retries = min(retries, FURTHER_STARTS)
+            retries = min(retries, len(ROUND_STARTS))
         self._most = effort.starts + retries
         self._memory: dict[int, Memory] = {}
         self._found: list[Candidate] = []
@@ -211,6 +216,9 @@ class Search:
             return self._result(own, own_reason(own.n_facets, self._n_facets), 0)
         tried = yield from self._candidates()
         solid, achieved = self._confirmed()
+        if self._effort == EFFORTS["fast"] and self._nearly(solid, achieved):
+            self._found += yield from self._of_another(self._n_facets, MORE)
+            solid, achieved = self._confirmed()
         errors = relative_errors(self._target.descriptors, achieved)
         overlap = self._target.jaccard_distance(solid.half_spaces)
         yield self._better(tried, solid.half_spaces, loss(self._weights, errors, overlap))
@@ -308,7 +316,7 @@ class Search:
         met = sorted(each.merit for each in found if each.met)
         whole = any(each.n_facets == len(each.half_spaces.offsets) for each in found if each.met)
         alike = len(met) > 1 and met[1] <= SPREAD * met[0]
-        return bool(met) and tried >= max(1, self._needed) + (0 if whole and alike else FURTHER_STARTS)
+        return bool(met) and tried >= max(1, self._needed) + (0 if whole and alike else self._effort.further)
 
     def _starts(self) -> Iterator[tuple[HalfSpaces, int]]:
         """As many as the effort and the retries allow, some with few half-spaces to grow from.
@@ -520,6 +528,11 @@ class Search:
         solid = ConvexPolyhedron.from_half_spaces(planes)
         errors = relative_errors(self._target.descriptors, describe(solid, LOSS_KEYS))
         return solid if max(errors.values()) <= EXACT else None
+
+    def _nearly(self, solid: ConvexPolyhedron, achieved: Descriptors) -> bool:
+        """Whether a descent kept all, but the public descriptors miss a term or facets are missing."""
+        missed = missed_terms(self._target.descriptors, achieved, self._keep)
+        return any(each.met for each in self._found) and (bool(missed) or solid.n_facets < self._n_facets)
 
     def _confirmed(self) -> tuple[ConvexPolyhedron, Descriptors]:
         """The best of which the public descriptors say that all is kept, else that which misses least."""

@@ -133,12 +133,15 @@ def with_cuts(
     axes: FloatArray | None = None,
     passed: int = 0,
 ) -> HalfSpaces:
-    """Half-spaces without a facet, at most so many, become cuts across the corners that hang out farthest."""
+    """Half-spaces without a facet, at most so many, become cuts across the corners that hang out farthest.
+
+    The half-spaces as they are where a cut would pass behind the origin, which may lie close to a facet.
+    """
     rays = target.rays
     cuts, normals, offsets = insert_lost_facets(
         planes.normals, planes.offsets, rays.directions, rays.first, rays.distance, depth, most, axes, passed
     )
-    return HalfSpaces(normals, offsets) if cuts >= 0 else planes
+    return HalfSpaces(normals, offsets) if cuts >= 0 and (offsets > 0.0).all() else planes
 
 
 def own_planes(target: Target, most: int) -> HalfSpaces | None:
