@@ -88,8 +88,6 @@ def match_materials(
     (those of the target count together), a table of descriptors or of length, width and thickness, or the
     name of a shipped card.
     """
-    if not isinstance(target, str):
-        check_count("The sample", len(target))
     yield from compile_first("describe")
     names = [name for name in (target, *candidates) if isinstance(name, str)]
     chords = any(Path(name).suffix.lower() in SUFFIXES for name in names)
@@ -105,6 +103,8 @@ def match_materials(
         if isinstance(files := sources[name], list) and Path(name).exists():
             for group, count in Counter(each.group for each in files).items():
                 check_count(_title(name, group), count)
+    if not isinstance(target, str):
+        check_count("The sample", len(target))
     with open_executor(workers) as executor:
         if isinstance(target, str):
             groups = yield from _measured(target, sources[target], keys, request, executor, problems)

@@ -10,7 +10,7 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.pages.dataset.views import CELL
+from regolith_studio.ui.pages.dataset.views import SIZE
 from regolith_studio.ui.widgets.formula import BREAK, LOWEST_LINE, MIN_LINE_HEIGHT, FormulaLabel
 
 WITH_CHOICES = ("explore", "scan", "model", "dataset")
@@ -47,7 +47,7 @@ def test_that_choices_are_at_the_right_of_every_page_and_above_their_button(wind
             assert place(button, page).y() > place(setting, page).y(), key
         if key == "dataset":  # the thumbnails have their room
             assert page.gallery.list.iconSize().width() >= 120
-            assert page.gallery.height() >= CELL.height()
+            assert page.gallery.height() >= SIZE + 2 * page.fontMetrics().lineSpacing()
     page = window.go("studies")
     app.processEvents()
     assert page.findChild(QPushButton, "coarsening_study_result_button").isVisible()
