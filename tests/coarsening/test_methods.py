@@ -140,6 +140,13 @@ def test_that_the_steps_begin_with_a_polyhedron_and_end_with_the_result(particle
         assert step.loss == pytest.approx(loss(LossWeights.from_preset("all"), errors, overlap), abs=of_rays)
 
 
+def test_that_the_curve_of_the_loss_falls_from_the_start_to_the_result(exact: CoarseningResult) -> None:
+    curve = exact.loss_history
+    assert len(curve) > 1
+    assert list(curve) == sorted(curve, reverse=True)
+    assert curve[-1] == pytest.approx(exact.loss, abs=1e-9)
+
+
 def test_that_a_weight_of_zero_frees_a_descriptor(particle: Mesh) -> None:
     weights = LossWeights.of(volume=1, aspect_ratio=1, jaccard_distance=1)
     found = coarsen(particle, 12, "exact", weights)

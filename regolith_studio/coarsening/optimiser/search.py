@@ -239,7 +239,7 @@ class Search:
                 break
             tried += 1
             if tried == 1 and not few and not self._found:
-                yield self._step(0, start)
+                yield self._better(0, start, None)
             for found in self._ends(start, held, tried, race):
                 if len(found.half_spaces.offsets) == self._n_facets:
                     yield from self._record(tried, found)
@@ -507,7 +507,8 @@ class Search:
         # less of Eq. 9 that misses more of what is to be kept was no step towards this
         while self._history and self._history[-1] < step.loss:
             self._history.pop()
-        self._history.append(step.loss)
+        if step.loss < np.inf:
+            self._history.append(step.loss)
         return step
 
     def _step(self, number: int, half_spaces: HalfSpaces, value: float | None = None) -> MethodStep:
