@@ -1908,7 +1908,7 @@
         <translation>Energiedistanz</translation>
     </message>
     <message>
-        <source>Energy distance to the sample over its noise, which one of twenty samples of the same material exceeds; a material below 1 cannot be told from the sample</source>
+        <source>Energy distance to the sample over its noise, which one of twenty samples of the same material exceeds; a material below 1 cannot be distinguished from the sample</source>
         <translation>Energiedistanz zur Probe über ihrem Rauschen, das eine von zwanzig Proben desselben Materials überschreitet; ein Material unter 1 ist von der Probe nicht zu unterscheiden</translation>
     </message>
     <message>

@@ -35,7 +35,7 @@ def errors_by_scipy(target: Target, n_facets: int) -> FloatArray:
     room for further cuts where all is kept exactly."""
     found = coarsen(target, n_facets)
     if found.n_facets < n_facets:
-        assert found.n_facets >= min(n_facets - 2, 18)
+        assert found.n_facets >= min(n_facets - 2, 20)
         assert found.reason is not None
         assert found.reason.startswith(f"The result has {found.n_facets} facets instead of {n_facets}")
     else:

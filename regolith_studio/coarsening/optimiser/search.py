@@ -36,6 +36,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.steps import as_events
 
 TERMS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio", "convex_hull_volume")
 """Rows of the descent."""
@@ -217,7 +218,8 @@ class Search:
         tried = yield from self._candidates()
         solid, achieved = self._confirmed()
         if self._effort == EFFORTS["fast"] and self._nearly(solid, achieved):
-            self._found += yield from self._of_another(self._n_facets, MORE)
+            found, more = yield from self._of_another(self._n_facets, MORE)
+            self._found, tried = [*self._found, *found], tried + more
             solid, achieved = self._confirmed()
         errors = relative_errors(self._target.descriptors, achieved)
         overlap = self._target.jaccard_distance(solid.half_spaces)
@@ -267,28 +269,31 @@ class Search:
         """What the same search finds for the next smaller of :data:`STAGES`, with its steps."""
         if self._stage == 0:
             return []
-        found = yield from self._of_another(self._stage, self._effort)
+        found, _ = yield from self._of_another(self._stage, self._effort)
         return found[: self._effort.finalists]
 
     def _of_less_effort(self) -> Iterator[MethodStep]:
         """What the least effort finds is among the candidates of more, with its steps."""
         least = EFFORTS["fast"]
-        if self._effort != least:
-            found = yield from self._of_another(self._n_facets, least)
+        if self._effort not in (least, MORE):
+            found, _ = yield from self._of_another(self._n_facets, least)
             self._found += found[:1]
 
     def _of_another(
         self, n_facets: int, effort: SearchEffort
-    ) -> Generator[MethodStep, None, list[Candidate]]:
-        """Candidates of another search with the same seed, the best first, with its steps."""
+    ) -> Generator[MethodStep, None, tuple[list[Candidate], int]]:
+        """Candidates of another search with the same seed, the best first, and its number of starts."""
         target, before = self._target, self._before
         search = Search(target, self._weights, self._keep, n_facets, effort, self._retries, self._seed)
-        for step in search._candidates():
+
+        def counted(step: MethodStep) -> Iterator[MethodStep]:
             self._before = before + step.step
             yield replace(step, step=self._before, steps=before + step.steps + self._most)
+
+        tried = yield from as_events(search._candidates(), counted)
         self._history = self._history or search._history
         self._free_distance = min(self._free_distance, search._free_distance)
-        return sorted(search._found, key=search._rank)
+        return sorted(search._found, key=search._rank), tried
 
     def _made_whole(self, tried: int, few: Sequence[Candidate]) -> Iterator[MethodStep]:
         """A step for a polyhedron with all facets, from any that keeps all, where the best have lost some."""

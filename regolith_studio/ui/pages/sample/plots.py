@@ -363,7 +363,7 @@ def _two_lines(column: Column) -> str:
 FILTER = N_("Meshes and tables (*.stl *.ply *.obj *.zip *.csv *.tsv *.txt)")
 NOISE = N_(
     "Energy distance to the sample over its noise, which one of twenty samples of the same material exceeds; "
-    "a material below 1 cannot be told from the sample"
+    "a material below 1 cannot be distinguished from the sample"
 )
 
 
