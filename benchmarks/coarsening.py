@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from benchmarks.independent import measured
 from benchmarks.plain import HAS_BOOLEANS, KEYS, PlainLoss, plain_annealing
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
+from regolith_studio.coarsening.decimated_hull import decimated_hull
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -75,7 +75,7 @@ def plain_loss(target: Target, **how: str | bool) -> PlainLoss:
 
 def annealed(target: Target, n_facets: int, loss: PlainLoss, seed: int) -> HalfSpaces:
     """The plain annealing, from the start that all methods have."""
-    start = np.array(quadric_half_spaces(target, n_facets).points)
+    start = np.array(decimated_hull(target, n_facets).half_spaces.points)
     return HalfSpaces.from_points(plain_annealing(loss, start, seed))
 
 
@@ -83,7 +83,7 @@ def compared(target: Target, index: int, n_facets: int) -> dict[str, list[float]
     """Errors, Jaccard distance and milliseconds of every method for one particle."""
     plain, with_overlap = plain_loss(target), plain_loss(target, overlap="points")
     cases: dict[str, Callable[[], HalfSpaces]] = {
-        "quadric half-spaces": lambda: quadric_half_spaces(target, n_facets),
+        "quadric half-spaces": lambda: decimated_hull(target, n_facets).half_spaces,
         "plain annealing": lambda: annealed(target, n_facets, plain, index),
         "plain annealing with IoU": lambda: annealed(target, n_facets, with_overlap, index),
         "annealing (ours)": lambda: unit(target, "annealing", n_facets),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
-from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
+from regolith_studio.coarsening.decimated_hull import decimated_hull
 from regolith_studio.coarsening.loss import LossFunction, box_extents
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -21,7 +21,7 @@ from tests.geometry.solids import rough_stone
 
 def planes_of(target: Target, n_facets: int) -> HalfSpaces:
     """Planes of the decimated hull with its ties broken."""
-    planes = quadric_half_spaces(target, n_facets)
+    planes = decimated_hull(target, n_facets).half_spaces
     return HalfSpaces(
         planes.normals, planes.offsets * (1 + 1e-6 * np.random.default_rng(0).random(len(planes)))
     )

@@ -308,12 +308,27 @@ def test_that_a_hull_with_too_few_triangles_is_refused_by_the_baseline() -> None
         coarsen(icosphere(0), 50, "quadric")
 
 
+def convex_body(seed: int) -> Mesh:
+    """The convex hull of 8 to 60 points, flat or long by chance."""
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(int(rng.integers(8, 60)), 3)) * (1.0, rng.uniform(0.2, 1), rng.uniform(0.1, 1))
+    return Mesh(points, np.empty((0, 3), dtype=np.int64)).hull
+
+
 @pytest.mark.parametrize("method", ["quadric", "annealing"])
 def test_that_a_decimated_hull_whose_planes_bound_no_solid_is_one_sentence(method: str) -> None:
-    rng = np.random.default_rng(15)
-    points = rng.normal(size=(int(rng.integers(8, 60)), 3)) * (1.0, rng.uniform(0.2, 1), rng.uniform(0.1, 1))
-    with pytest.raises(GeometryError, match=r"to 6 triangles bound no solid .* more facets"):
-        coarsen(Mesh(points, np.empty((0, 3), dtype=np.int64)).hull, 6, method)
+    with pytest.raises(GeometryError, match=r"to 5 triangles bound no solid .* more facets"):
+        coarsen(convex_body(205), 5, method)
+
+
+@pytest.mark.parametrize("seed", [15, 50, 65, 82, 92, 226, 278, 364])
+def test_that_other_edges_are_collapsed_where_the_planes_bound_no_solid(seed: int) -> None:
+    """Bodies whose hulls are left without a solid by the library's own sequence of collapses."""
+    body = convex_body(seed)
+    found = coarsen(body, 6, "quadric")
+    assert 4 <= found.n_facets <= 6
+    assert 0.0 < found.polyhedron.volume < 2.0 * body.volume
+    assert found.jaccard_distance < 0.95
 
 
 def test_that_a_mesh_inside_out_is_turned(particle: Mesh, exact: CoarseningResult) -> None:

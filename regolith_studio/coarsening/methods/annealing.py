@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
-from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
+from regolith_studio.coarsening.decimated_hull import decimated_hull
 from regolith_studio.coarsening.loss import Evaluation, LossFunction
 from regolith_studio.coarsening.progress import MethodStep, Move
 from regolith_studio.coarsening.result import MethodResult
@@ -139,7 +139,7 @@ class AnnealingMethod:
 
 
 def _start(target: Target, n_facets: int, rng: np.random.Generator) -> FloatArray:
-    half_spaces = quadric_half_spaces(target, n_facets)
+    half_spaces = decimated_hull(target, n_facets).half_spaces
     points = half_spaces.points
     if len(points) < n_facets:
         extra = np.arange(n_facets - len(points)) % len(points)

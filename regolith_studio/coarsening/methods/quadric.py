@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from regolith_studio.coarsening.decimated_hull import decimated_hull, quadric_half_spaces
+from regolith_studio.coarsening.decimated_hull import decimated_hull
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
@@ -23,27 +23,6 @@ class QuadricSettings:
     """Whether the half-spaces' polyhedron is scaled to the volume of the particle."""
 
     restore_volume: bool = field(default=False, metadata={"label": N_("Restore the volume")})
-
-
-def variants(target: Target, n_facets: int) -> dict[str, dict[str, float]]:
-    """Errors of the three readings of the baseline: ``mesh``, ``half_spaces``, ``volume_restored``."""
-    half_spaces = quadric_half_spaces(target, n_facets)
-    polyhedron = ConvexPolyhedron.from_half_spaces(half_spaces)
-    restored = ConvexPolyhedron.from_half_spaces(restored_volume(half_spaces))
-    solids: Mapping[str, Mesh | ConvexPolyhedron] = {
-        "mesh": decimated_hull(target, n_facets),
-        "half_spaces": polyhedron,
-        "volume_restored": restored,
-    }
-    table = {name: dict(relative_errors(target.descriptors, describe(s))) for name, s in solids.items()}
-    table["half_spaces"][JACCARD] = target.jaccard_distance(polyhedron.half_spaces)
-    table["volume_restored"][JACCARD] = target.jaccard_distance(restored.half_spaces)
-    return table
-
-
-def restored_volume(half_spaces: HalfSpaces) -> HalfSpaces:
-    """The same polyhedron scaled to unit volume."""
-    return half_spaces.scaled(ConvexPolyhedron.from_half_spaces(half_spaces).volume ** (-1 / 3))
 
 
 class QuadricMethod:
@@ -64,14 +43,35 @@ class QuadricMethod:
         fewer: HalfSpaces | None = None,  # noqa: ARG002
     ) -> Generator[MethodStep, None, MethodResult]:
         """One step; the loss is that of the half-spaces."""
-        half_spaces = quadric_half_spaces(target, n_facets)
+        decimated = decimated_hull(target, n_facets)
+        polyhedron = decimated.polyhedron
+        planes = decimated.half_spaces.scaled(polyhedron.volume ** (-1 / 3))
+        restored = ConvexPolyhedron.from_half_spaces(planes)
+        solids: Mapping[str, Mesh | ConvexPolyhedron] = {
+            "mesh": decimated.mesh,
+            "half_spaces": polyhedron,
+            "volume_restored": restored,
+        }
+        achieved = {name: describe(solid) for name, solid in solids.items()}
+        variants = {
+            name: dict(relative_errors(target.descriptors, found)) for name, found in achieved.items()
+        }
+        variants["half_spaces"][JACCARD] = target.jaccard_distance(polyhedron.half_spaces)
+        variants["volume_restored"][JACCARD] = target.jaccard_distance(restored.half_spaces)
+        chosen, solid = "half_spaces", polyhedron
         if settings.restore_volume:
-            half_spaces = restored_volume(half_spaces)
-        others = variants(target, n_facets)
-        chosen = others["volume_restored" if settings.restore_volume else "half_spaces"]
-        value = loss(weights, chosen, chosen[JACCARD])
-        yield MethodStep(1, 1, value, half_spaces)
-        return MethodResult(half_spaces, loss_history=(value,), variants=others)
+            chosen, solid = "volume_restored", restored
+        distance = variants[chosen][JACCARD]
+        value = loss(weights, variants[chosen], distance)
+        yield MethodStep(1, 1, value, solid.half_spaces)
+        return MethodResult(
+            solid.half_spaces,
+            loss_history=(value,),
+            variants=variants,
+            polyhedron=solid,
+            achieved=achieved[chosen],
+            jaccard_distance=distance,
+        )
 
 
 METHOD = QuadricMethod()
