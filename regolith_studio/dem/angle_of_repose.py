@@ -34,7 +34,10 @@ the silhouette is the highest of more grains. Measured: 0.28, on noisy cones of 
 PAPER_AZIMUTHS = (0.0, 90.0)
 """Degrees of x-z and y-z."""
 NO_TIP = N_(
-    "The section at {azimuth} degrees has no two flanks: its two lines do not meet at a tip between them."
+    "The section at {azimuths} degrees has no two flanks: its two lines do not meet at a tip between them."
+)
+NO_TIPS = N_(
+    "The sections at {azimuths} degrees have no two flanks: their two lines do not meet at a tip between them."
 )
 NOT_ROUND = N_(
     "The x-z and the y-z section give {paper} degrees, outside of the interval of all sections: "
@@ -141,8 +144,7 @@ def measure_repose(
     except NotAPileError as refusal:
         refusal.base, refusal.profiles, refusal.sections = level, surfaces, tuple(fitted)
         raise
-    refused += [_without_tip(each) for each in fitted if not each.has_tip]
-    warnings = [*left_out, *refused]
+    warnings = [*left_out, *refused, *_without_tip([each for each in fitted if not each.has_tip])]
     if len(where) < RELIABLE_N:
         warnings.append(COARSE_PILE)
     flanks = _flanks(sections)
@@ -277,8 +279,11 @@ def _two_flanked(
     return sections, paper
 
 
-def _without_tip(section: Section) -> str:
-    return Message(LEFT_OUT, reason=Message(NO_TIP, azimuth=Number(section.azimuth, "g")))
+def _without_tip(sections: Sequence[Section]) -> list[str]:
+    """One sentence about all of these, or none."""
+    azimuths = ", ".join(f"{each.azimuth:g}" for each in sections)
+    reason = Message(NO_TIP if len(sections) == 1 else NO_TIPS, azimuths=azimuths)
+    return [Message(LEFT_OUT, reason=reason)] if sections else []
 
 
 def _check_straightness(sections: Sequence[Section]) -> None:

@@ -6364,8 +6364,8 @@
         <translation>Das Skript ist in der Zwischenablage.</translation>
     </message>
     <message>
-        <source>The section at {azimuth} degrees has no two flanks: its two lines do not meet at a tip between them.</source>
-        <translation>Der Schnitt bei {azimuth} Grad hat keine zwei Flanken: seine beiden Geraden treffen sich nicht in einer Spitze dazwischen.</translation>
+        <source>The section at {azimuths} degrees has no two flanks: its two lines do not meet at a tip between them.</source>
+        <translation>Der Schnitt bei {azimuths} Grad hat keine zwei Flanken: seine beiden Geraden treffen sich nicht in einer Spitze dazwischen.</translation>
     </message>
     <message>
         <source>The section at {azimuth} degrees has no two flanks: {points} surface points lie between the cuts, and each flank needs {needed} that rise to an apex.</source>
@@ -6378,6 +6378,10 @@
     <message>
         <source>The section of a measured heap is shown here.</source>
         <translation>Hier erscheint der Schnitt durch einen vermessenen Schüttkegel.</translation>
+    </message>
+    <message>
+        <source>The sections at {azimuths} degrees have no two flanks: their two lines do not meet at a tip between them.</source>
+        <translation>Die Schnitte bei {azimuths} Grad haben keine zwei Flanken: ihre beiden Geraden treffen sich nicht in einer Spitze dazwischen.</translation>
     </message>
     <message>
         <source>The series of a fit has no random numbers.</source>
