@@ -12,6 +12,7 @@ from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.result_card import ResultRecord, ResultView
 from regolith_studio.ui.widgets.labels import (
     CITATION,
+    ElidedLabel,
     FixedHeightText,
     WrappedLabel,
     heading,
@@ -54,6 +55,16 @@ def test_that_a_sentence_gets_real_subscripts_and_is_left_alone_without_symbols(
 def test_that_plain_symbols_have_the_subscripts_that_unicode_has():
     assert plain_symbol("D_max / D_min") == "Dₘₐₓ / Dₘᵢₙ"
     assert plain_symbol("I_3, r_eq, Ψ_K") == "I₃, r_eq, Ψ_K"
+
+
+def test_that_a_detail_leaves_out_whole_parts_where_there_is_no_room(app):
+    label = ElidedLabel("30.5 × 22.8 × 29 µm, 5,120 triangles", by_parts=True)
+    width = label.fontMetrics().horizontalAdvance
+    for room, shown in ((len(label.text()), label.text()), (25, "30.5 × 22.8 × 29 µm"), (10, None)):
+        label.resize(width(label.text()[:room]) + 4, 20)
+        assert label.shown_text() == shown or (shown is None and label.shown_text().endswith("…"))
+    assert label.toolTip() == label.text()
+    label.deleteLater()
 
 
 SIZES = [(1000, 900, False), (500, 900, True), (500, 400, False)]

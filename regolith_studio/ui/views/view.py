@@ -369,7 +369,7 @@ class ViewFrame(QFrame):
         self._title = named(QLabel(), f"title_{name}", role="heading")
         self._title.setTextFormat(Qt.TextFormat.RichText)
         self._title.setMinimumWidth(10)
-        self.detail = ElidedLabel(role="hint")
+        self.detail = ElidedLabel(role="hint", by_parts=True)
         self.partner = ChoiceBox(f"partner_{name}", tr(compare), partners or {})
         self.partner.setMinimumContentsLength(7)
         self.partner.prefers_whole = True
@@ -438,7 +438,10 @@ class ViewFrame(QFrame):
             self.view.set_font_factor(self.fontInfo().pixelSize() / _DEFAULT_PIXELS)
 
     def _choose_title(self) -> None:
-        """The longest title that there is room for; the shortest with dots where there is none."""
+        """The longest title that there is room for; the shortest with dots where there is none.
+
+        These are in the middle, since names of particles differ at their ends.
+        """
         self._title.ensurePolished()
         self._title.setToolTip(self._titles[0])
         room = self.width() - 2 * _PADDING - 8 - self._mark.sizeHint().width()
@@ -447,5 +450,5 @@ class ViewFrame(QFrame):
             if self._title.sizeHint().width() <= room:
                 return
         words = plain_text(self._titles[-1])
-        dotted = self._title.fontMetrics().elidedText(words, Qt.TextElideMode.ElideRight, room)
+        dotted = self._title.fontMetrics().elidedText(words, Qt.TextElideMode.ElideMiddle, room)
         self._title.setText(html.escape(dotted))

@@ -235,7 +235,7 @@ class ElidedLabel(QWidget):
     """One line of plain text, elided if necessary, with the whole text as tool tip.
 
     ``role``: ``heading`` or ``hint_label``, for the style sheet. ``elide``: where it is elided: paths in the
-    middle.
+    middle. ``by_parts``: parts behind a comma or semicolon that there is no room for are left out whole.
     """
 
     def __init__(
@@ -244,9 +244,10 @@ class ElidedLabel(QWidget):
         role: str = "",
         *,
         elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight,
+        by_parts: bool = False,
     ) -> None:
         super().__init__()
-        self._elide = elide
+        self._elide, self._by_parts = elide, by_parts
         self._text = ""
         self.setProperty("role", role)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
@@ -270,7 +271,13 @@ class ElidedLabel(QWidget):
         return QSize(20, self.fontMetrics().height() + 2)
 
     def shown_text(self) -> str:
-        return self.fontMetrics().elidedText(self._text, self._elide, self.width())
+        metrics, text = self.fontMetrics(), self._text
+        while self._by_parts and metrics.horizontalAdvance(text) > self.width():
+            end = max(text.rfind(", "), text.rfind("; "))
+            if end < 0:
+                break
+            text = text[:end]
+        return metrics.elidedText(text, self._elide, self.width())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         painter = QPainter(self)
