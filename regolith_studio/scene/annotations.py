@@ -2,6 +2,7 @@
 
 import math
 import weakref
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import pyvista as pv
@@ -38,6 +39,11 @@ def length_text(micrometres: float) -> str:
         if micrometres < factor * 1e3 or unit == "m":
             return f"{micrometres / factor:.4g} {unit}"
     raise AssertionError("the last unit takes every length")
+
+
+def distance_text(micrometres: float) -> str:
+    """A signed distance at the scale of a colour map."""
+    return f"{micrometres:.2g} µm"
 
 
 class ScaleBar:
@@ -94,7 +100,7 @@ class ScaleBar:
     def update(self) -> None:
         """Fit the bar to the camera; called by itself before every picture."""
         for scale in self._colour_scales.values():
-            scale.GetLabelTextProperty().SetFontSize(round(LABEL_SIZE * self._factor))
+            scale.GetAnnotationTextProperty().SetFontSize(round(LABEL_SIZE * self._factor))
         width, height = self._renderer.GetSize()
         low, high = self._renderer.ComputeVisiblePropBounds()[:2]
         measurable = low <= high and not self.suspended  # the other way round, there is no surface
@@ -165,28 +171,38 @@ def show_title(plotter: Any, title: str, size: int = 11) -> None:
     text.prop.justification_vertical = "top"
 
 
-def show_colour_scale(plotter: Any, mapper: Any, surroundings: ThemeColors, numbers: str = "%.2g µm") -> None:
-    """The scale of a colour map at the right; of distances in micrometres, unless `numbers` says so.
+def show_colour_scale(
+    plotter: Any, mapper: Any, surroundings: ThemeColors, write: Callable[[float], str] = distance_text
+) -> None:
+    """The scale of a colour map at the right, with numbers at its ends and its centre.
 
-    Its numbers stand to the left of it, where they have room in a narrow view too.
+    They stand to the left of it, where they have room in a narrow view too. They are annotations, since the
+    labels of VTK have a decimal point in every language.
+
+    ``write``: the text of a number.
     """
     bar = plotter.add_scalar_bar(
         title=" ",
         mapper=mapper,
         color=surroundings.ink,
-        n_labels=3,
-        fmt=f"{numbers}  ",
         vertical=True,
         width=0.045,
         height=0.26,
         position_x=0.92,
         position_y=0.04,
-        label_font_size=LABEL_SIZE,
         title_font_size=11,
         unconstrained_font_size=True,
         render=False,
     )
-    bar.SetTextPositionToPrecedeScalarBar()
+    low, high = mapper.scalar_range
+    for value in (low, (low + high) / 2, high):
+        bar.GetLookupTable().SetAnnotation(value, write(value))
+    numbers = bar.GetAnnotationTextProperty()
+    numbers.SetFontSize(LABEL_SIZE)
+    numbers.SetColor(*pv.Color(surroundings.ink).float_rgb)
+    bar.SetDrawTickLabels(False)
+    bar.SetDrawAnnotations(True)
+    bar.SetTextPositionToSucceedScalarBar()  # annotations are at the other side
 
 
 def hide_colour_scale(plotter: Any) -> None:

@@ -1,5 +1,6 @@
 """Scenes of the lecture: one move of the annealing; a random field on the sphere with its particle."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -76,13 +77,13 @@ def show_field(
     values: FloatArray,
     span: float,
     surroundings: ThemeColors = palette.LIGHT,
-    scale: str = "",
+    write: Callable[[float], str] | None = None,
 ) -> None:
     """A surface coloured by the values at its vertices.
 
     - ``values``: shape (n,); blue below zero, red above.
     - ``span``: value at the ends of the colour map.
-    - ``scale``: format of the numbers at the scale, such as ``%.2g``; no scale if empty.
+    - ``write``: the text of a number at the scale; there is no scale without.
     """
     surface = smooth_surface(mesh)
     surface.point_data["field"] = np.asarray(values, dtype=np.float32)
@@ -96,5 +97,5 @@ def show_field(
     mapper.SetScalarModeToUsePointFieldData()
     mapper.SelectColorArray("field")
     annotations.hide_colour_scale(plotter)
-    if scale:
-        annotations.show_colour_scale(plotter, mapper, surroundings, scale)
+    if write is not None:
+        annotations.show_colour_scale(plotter, mapper, surroundings, write)

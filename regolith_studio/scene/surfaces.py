@@ -4,7 +4,7 @@ Each function may be called again and again on one plotter: the actors stay, onl
 and the camera is left alone.
 """
 
-from collections.abc import Set
+from collections.abc import Callable, Set
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,7 @@ def show_fit(
     distances: FloatArray | None = None,
     span: float | None = None,
     surroundings: ThemeColors = palette.LIGHT,
+    write: Callable[[float], str] = annotations.distance_text,
 ) -> None:
     """The fit, in its own colour or coloured by its distance from the particle.
 
@@ -59,6 +60,7 @@ def show_fit(
     - ``distances``: signed distance of each vertex from the particle, shape (n,), positive outside.
     - ``span``: distance at both ends of the colour map; the largest distance if not given.
     - ``surroundings``: whose ink the scale of the map is written with.
+    - ``write``: the text of a distance at the scale.
     """
     surface = smooth_surface(mesh)
     if distances is not None:
@@ -73,7 +75,7 @@ def show_fit(
         mapper.scalar_range = (-reach or -1.0, reach or 1.0)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("distance")
-        annotations.show_colour_scale(plotter, mapper, surroundings)
+        annotations.show_colour_scale(plotter, mapper, surroundings, write)
 
 
 def show_polyhedron(

@@ -54,6 +54,9 @@ def test_that_the_distance_map_comes_and_goes(plotter, ball):
     assert mapper.scalar_visibility
     assert tuple(mapper.scalar_range) == pytest.approx((-30.0, 30.0))
     assert len(plotter.scalar_bars) == 1
+    table = next(iter(plotter.scalar_bars.values())).GetLookupTable()
+    texts = [table.GetAnnotation(at) for at in range(table.GetNumberOfAnnotatedValues())]
+    assert texts == ["-30 µm", "0 µm", "30 µm"]
     surfaces.show_fit(plotter, ball)
     assert not mapper.scalar_visibility
     assert len(plotter.scalar_bars) == 0

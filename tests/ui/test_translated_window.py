@@ -164,6 +164,20 @@ def test_that_the_dialogs_of_qt_and_the_keys_speak_german(opened, speaking):
     assert points_left(window) == []
 
 
+@pytest.mark.slow
+def test_that_the_scale_of_the_distances_has_a_decimal_comma(opened, speaking, monkeypatch):
+    speaking("de")
+    views = opened().page.three_views
+    monkeypatch.setattr(
+        views._distances, "between", lambda fit, _particle: np.linspace(-0.8, 0.8, len(fit.vertices))
+    )
+    views.set_heat(True)
+    bars = views.views["fit"]._plotter.scalar_bars
+    table = next(iter(bars.values())).GetLookupTable()
+    texts = [table.GetAnnotation(at) for at in range(3)]
+    assert texts == ["-0,8 µm", "0 µm", "0,8 µm"]
+
+
 def test_that_no_two_commands_of_a_german_menu_have_the_same_letter(opened, speaking):
     speaking("de")
     window = opened()

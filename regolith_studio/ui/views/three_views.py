@@ -19,14 +19,14 @@ from regolith_studio.harmonics.star_point import hidden_faces
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene import facets, overlays, surfaces
-from regolith_studio.scene.annotations import bar_length, length_text
+from regolith_studio.scene.annotations import bar_length, distance_text, length_text
 from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.scene.surfaces import measure_distances
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
+from regolith_studio.ui.translation import Markup, localized, number_text, rich, tr, translate
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, Sections, partners_of
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, Picture, SceneView, ViewFrame
@@ -413,7 +413,9 @@ class ThreeViews(QSplitter):
         distances = self._distances.between(mesh, particle) if self._heat else None
         if self._heat and distances is None:
             return  # what is shown stays until they are measured
-        self.views[FIT].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
+        self.views[FIT].draw(
+            lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink, _distance_text)
+        )
         if distances is None:
             self.frames[FIT].set_detail(self._size_of_fit)
         else:
@@ -463,6 +465,10 @@ class ThreeViews(QSplitter):
         self.frames[PARTICLE].set_texts(tr("Particle"))
         self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), soon, tr("Fit"))
         self.frames[POLYHEDRON].set_texts(tr("Polyhedron"), late)
+
+
+def _distance_text(micrometres: float) -> str:
+    return localized(distance_text(micrometres))
 
 
 def _lengths(bounds: FloatArray) -> str:

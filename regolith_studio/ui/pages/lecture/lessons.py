@@ -20,7 +20,7 @@ from regolith_studio.ui.layout import STRETCH, control_row, hbox, named, scrolle
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import Markup, tr, tr_count
+from regolith_studio.ui.translation import Markup, number_text, tr, tr_count
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
 from regolith_studio.ui.widgets.fields import ChoiceBox, NumberSlider, NumberSpec, StepPlayer
@@ -371,7 +371,9 @@ class FieldView(QWidget):
         radius = float(np.cbrt(3 * drawn.mesh.volume / (4 * np.pi)))
         sphere = drawn.sphere.moved(scale=radius)
         self.frames["sphere"].view.draw(
-            lambda plotter: show_field(plotter, sphere, drawn.values, span, ink, "%.2g")
+            lambda plotter: show_field(
+                plotter, sphere, drawn.values, span, ink, lambda x: number_text(x, ".2g")
+            )
         )
         self.frames["grain"].view.draw(
             lambda plotter: show_field(plotter, drawn.mesh, drawn.values, span, ink)
