@@ -37,7 +37,8 @@ NO_TIP = N_(
     "The section at {azimuths} degrees has no two flanks: its two lines do not meet at a tip between them."
 )
 NO_TIPS = N_(
-    "The sections at {azimuths} degrees have no two flanks: their two lines do not meet at a tip between them."
+    "The sections at {azimuths} degrees have no two flanks: their two lines do not meet at a tip between "
+    "them."
 )
 NOT_ROUND = N_(
     "The x-z and the y-z section give {paper} degrees, outside of the interval of all sections: "

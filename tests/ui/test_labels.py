@@ -57,7 +57,8 @@ def test_that_plain_symbols_have_the_subscripts_that_unicode_has():
     assert plain_symbol("I_3, r_eq, Ψ_K") == "I₃, r_eq, Ψ_K"
 
 
-def test_that_a_detail_leaves_out_whole_parts_where_there_is_no_room(app):
+@pytest.mark.usefixtures("app")
+def test_that_a_detail_leaves_out_whole_parts_where_there_is_no_room():
     label = ElidedLabel("30.5 × 22.8 × 29 µm, 5,120 triangles", by_parts=True)
     width = label.fontMetrics().horizontalAdvance
     for room, shown in ((len(label.text()), label.text()), (25, "30.5 × 22.8 × 29 µm"), (10, None)):
