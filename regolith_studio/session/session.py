@@ -98,6 +98,11 @@ class Session:
         return self._board.running
 
     @property
+    def ending_queue(self) -> str:
+        """Queue of the task whose end is reacted to at present, if there is one."""
+        return self._board.ending
+
+    @property
     def n_steps(self) -> int:
         """Number of steps that :meth:`undo` can take back."""
         return self._history.depth

@@ -44,11 +44,13 @@ class Reactions:
 class TaskBoard:
     """Submits jobs to a runner and drops the events of jobs that a newer one has replaced.
 
-    ``changed``: called whenever :attr:`running` has changed.
+    ``changed``: called whenever :attr:`running` has changed. ``ending``: queue of the task whose end is
+    reacted to at present, if there is one.
     """
 
     def __init__(self, runner: Runner, changed: Callable[[], None]) -> None:
         self._runner, self._changed = runner, changed
+        self.ending = ""
         self._number = 0
         self._newest: dict[str, int] = {}
         self._tasks: dict[int, Task] = {}
@@ -150,6 +152,7 @@ class TaskBoard:
     def _end(self, number: int, event: Finished | Failed | Stopped, reactions: Reactions) -> None:
         queue = self._tasks[number].queue
         self._remove(number)
+        outer, self.ending = self.ending, queue
         try:
             match event:
                 case Finished(value):
@@ -159,6 +162,7 @@ class TaskBoard:
                 case Stopped():
                     reactions.stopped()
         finally:
+            self.ending = outer
             if start := self._waiting.pop(queue, None):
                 start()
         self._changed()

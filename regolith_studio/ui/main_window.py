@@ -119,6 +119,7 @@ class MainWindow(QMainWindow):
     def _wire(self) -> None:
         session, bindings = self.session, self.bindings
         self.activity.wire(session, bindings, self.toast)
+        self.toast.follow(session, bindings)
         self.commands.openers[FileKind.PROJECT] = self.projects.open
         for page in self.pages.pages.values():
             self.commands.openers |= dict.fromkeys(page.opens, partial(self.pages.open_in, page.key))

@@ -211,6 +211,7 @@ def page_of(shown, preferences, pictures_on_request):  # noqa: ARG001
         )
         toast = Toast(frame)
         bindings = Bindings(session, toast.problem, frame)
+        toast.follow(session, bindings)
         commands = Commands(session, preferences, toast, frame)
         context = PageContext(page.key, session, bindings, preferences, toast, commands, "image", go)
         made = shown(page.build(context))

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
+from regolith_studio.errors import InputError
 from regolith_studio.jobs.events import Job, Partial, Progress, Started
 from regolith_studio.jobs.particle_jobs import load_sample
 from regolith_studio.jobs.runners import InlineRunner
@@ -50,6 +51,11 @@ class _Counter(PageWidget):
         return "Something is written." if self.heard else ""
 
 
+def _refused():
+    yield Started("Fitting", 1)
+    raise InputError("There is no fit.")
+
+
 def _numbers(total):
     yield Started("Counting", total)
     for number in range(total):
@@ -68,6 +74,7 @@ def stack(shown, preferences):
     session = Session(InlineRunner())
     window = shown(QWidget())
     toast = Toast(window)
+    toast.follow(session, Bindings(session, toast.problem, window))
     commands = Commands(session, preferences, toast, window)
 
     def context(key):
@@ -221,3 +228,26 @@ def _outcome(steps):
         except StopIteration as end:
             yield end.value
             return
+
+
+def test_that_the_message_of_a_failure_goes_when_the_next_run_of_its_kind_begins(stack):
+    context = stack.go("one").context
+    fail = Job(_refused)
+    context.start(
+        "Fitting", fail, print, failed=lambda failure: context.toast.problem(failure.sentence), queue="fit"
+    )
+    assert context.toast.isVisible()
+    context.start("Drawing", Job(_numbers, (3,)), print, queue="draw")
+    assert context.toast.isVisible(), "it is about something else"
+    seen = []
+    context.start(
+        "Fitting",
+        Job(_numbers, (1,)),
+        print,
+        lambda _part: seen.append(context.toast.isVisible()),
+        queue="fit",
+    )
+    assert seen == [False]
+    context.toast.problem("There are no particles.")
+    context.start("Fitting", Job(_numbers, (1,)), print, queue="fit")
+    assert context.toast.isVisible(), "not of a task"

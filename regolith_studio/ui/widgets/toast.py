@@ -1,6 +1,6 @@
 """Messages at the lower edge of the window that disappear after some seconds."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
@@ -18,6 +18,8 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.readers.particles import FileProblem
+from regolith_studio.session.session import Session
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.layout import dialog_buttons, hbox, named
 from regolith_studio.ui.translation import inert, tr, translate
 
@@ -39,7 +41,8 @@ class Toast(QFrame):
         self.setObjectName("toast")
         self.setProperty("role", "toast")
         self.setAutoFillBackground(True)
-        self._details = ""
+        self._details = self._queue = ""
+        self._ending: Callable[[], str] = str
         self.sentence = named(QLabel(), "toast_sentence")
         self.sentence.setWordWrap(True)
         self.sentence.setMinimumWidth(300)
@@ -65,6 +68,16 @@ class Toast(QFrame):
     def problem(self, sentence: str, details: str = "") -> None:
         self._show_message("problem", translate(sentence), details, PROBLEM_SECONDS)
 
+    def follow(self, session: Session, bindings: Bindings) -> None:
+        """Hide the message of a task from when the next task of its queue begins."""
+
+        def hide_old() -> None:
+            if self._queue in {task.queue for task in session.tasks}:
+                self.hide()
+
+        self._ending = lambda: session.ending_queue
+        bindings.listen("tasks", hide_old)
+
     @contextmanager
     def reporting(self) -> Iterator[None]:
         """Report what is refused in a ``with`` statement, which ends there."""
@@ -80,13 +93,14 @@ class Toast(QFrame):
 
     def hideEvent(self, event: QEvent) -> None:
         self._timer.stop()
+        self._queue = ""
         super().hideEvent(event)  # type: ignore[arg-type]
 
     def _show_message(self, kind: str, sentence: str, details: str, seconds: int) -> None:
         self.setProperty("kind", kind)
         self.style().unpolish(self)
         self.style().polish(self)
-        self._details = details
+        self._details, self._queue = details, self._ending()
         self.sentence.setText(sentence)
         self.more.setVisible(bool(details))
         self.setAccessibleName(sentence)
