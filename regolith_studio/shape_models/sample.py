@@ -117,7 +117,8 @@ class Sample:
         Raises InputError if the sample was not expanded so far.
         """
         if not 0 <= l_max <= self.l_max:
-            raise InputError(f"The sample is expanded to l_max = {self.l_max}, so it has no l_max = {l_max}.")
+            sentence = N_("The sample is expanded to l_max = {top}, so it has no l_max = {l_max}.")
+            raise InputError(Message(sentence, top=self.l_max, l_max=l_max))
         if l_max == self.l_max:
             return self
         return Sample(self.coefficients[:, : (l_max + 1) ** 2], self.names, self.unit)

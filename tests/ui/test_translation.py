@@ -5,19 +5,25 @@ import re
 import shutil
 import string
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from regolith_studio.coarsening.lower_bounds import max_sphericity, sphericity_reason
 from regolith_studio.coarsening.reasons import MISSED, MISSED_BY, NAMES
+from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.messages import Message, join_messages
 from regolith_studio.resources import resource
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.models.hull_field import HullField
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.loss_variants import losses
 from regolith_studio.ui.pages.sample.page import in_english
 from regolith_studio.ui.translation import LANGUAGES, language_of, tr, translate
@@ -109,6 +115,39 @@ def test_that_labels_of_losses_are_translated_with_their_parts(speaking):
     parts = join_messages([Message(each) for each in ("Overlap", "size", "sphericity")], " + ")
     assert parts == "Overlap + size + sphericity"
     assert translate(parts) == "Überdeckung + Größe + Sphärizität"
+
+
+@pytest.mark.parametrize("l_max", [0, 2])
+def test_that_a_model_that_refuses_a_degree_does_so_in_german(l_max, speaking):
+    """So are all sentences that the forms of the window let through."""
+    radii = np.random.default_rng(0).normal(0.0, 0.02, (12, (l_max + 1) ** 2))
+    radii[:, 0] = np.linspace(50.0, 200.0, 12)
+    sample = Sample(radii, tuple("abcdefghijkl"))
+    speaking("de")
+    said = [
+        sentence
+        for model in MODELS.values()
+        if (sentence := _refusal(partial(model.fit, sample, model.Settings(l_max=l_max))))
+    ]
+    said.append(_refusal(partial(sample.truncated, 5)))
+    for fine in (None, range(5)):
+        said.append(_refusal(partial(HullField.truncated, _drawn(fine), 31)))
+    assert len(said) == {0: 4, 2: 1}[l_max] + 3
+    for sentence in said:
+        assert translate(sentence) != sentence
+
+
+def _drawn(fine):
+    """As much of a hull field up to degree 8 as is asked for its degrees."""
+    return SimpleNamespace(_base=8 - len(fine or ()), l_max=8, fine=fine)
+
+
+def _refusal(act):
+    try:
+        act()
+    except InputError as error:
+        return error.args[0]
+    return ""
 
 
 def test_that_a_filter_takes_the_words_that_are_read_and_the_english_ones(speaking):

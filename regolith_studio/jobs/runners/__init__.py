@@ -10,6 +10,7 @@ from typing import Protocol, runtime_checkable
 
 from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Step, Stopped
+from regolith_studio.messages import N_, Message
 
 
 class Handle(Protocol):
@@ -90,10 +91,11 @@ def failure(error: BaseException) -> Failed:
     if isinstance(error, RegolithError):
         return Failed(str(error), details)
     if isinstance(error, MemoryError):
-        return Failed("The work needs more memory than this machine has.", details)
+        return Failed(N_("The work needs more memory than this machine has."), details)
     if isinstance(error, OSError) and error.errno is not None:
         return Failed(format_os_error(error), details)
-    return Failed(f"The program made a mistake ({type(error).__name__}: {error}).", details)
+    sentence = N_("The program made a mistake ({kind}: {error}).")
+    return Failed(Message(sentence, kind=type(error).__name__, error=str(error)), details)
 
 
 @dataclass

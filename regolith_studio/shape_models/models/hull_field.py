@@ -42,7 +42,7 @@ from scipy.special import ndtr, ndtri
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import log_ellipsoids, with_forms
@@ -390,8 +390,12 @@ class HullField(SizedSampler):
         Raises InputError if `l_max` is beyond the field, or below the degree of what is moved to its hull.
         """
         if not self._base <= l_max <= self.l_max:
-            right = f"from {self._base} to {self.l_max}" if self.fine else f"= {self.l_max} only"
-            raise InputError(f"This hull field is drawn with l_max {right}, got l_max = {l_max}.")
+            sentence = (
+                N_("This hull field is drawn with l_max from {base} to {top}, got l_max = {l_max}.")
+                if self.fine
+                else N_("This hull field is drawn with l_max = {top} only, got l_max = {l_max}.")
+            )
+            raise InputError(Message(sentence, base=self._base, top=self.l_max, l_max=l_max))
         if l_max == self.l_max or self.fine is None:
             return self
         fine = self.fine.first(l_max - self._base) if l_max > self._base else None
@@ -487,9 +491,9 @@ class HullFieldModel:
             raise InputError(f"The size law must be one of {', '.join(SIZE_LAWS)}, got {chosen.size_law!r}.")
         cut = sample.truncated(chosen.l_max)
         if not DEGREES[0] <= chosen.l_max <= DEGREES[1]:
-            raise InputError(
-                f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
-            )
+            sentence = N_("A field drawn to its hull has l_max {low} to {high}, got {l_max}.")
+            low, high = DEGREES
+            raise InputError(Message(sentence, low=low, high=high, l_max=chosen.l_max))
         whole = cut.star_shaped()
         # Once more: cut at the lower degree a radius may fall below zero.
         usable = whole.truncated(min(chosen.l_max, HULL_DEGREE)).star_shaped()
