@@ -21,7 +21,7 @@ NAMES = {
 """Of terms inside a sentence."""
 MISSED = N_(
     "No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}."
-    " A weight of 0 frees a descriptor."
+    " Set a weight to 0 to ignore a descriptor."
 )
 THIS_MISSES = N_("This one misses {missed}.")
 MISSED_BY = N_("{name} by {error} %")

@@ -112,7 +112,7 @@ class CoarseningResult:
         return Message(
             N_(
                 "Keeping the descriptors costs overlap: the Jaccard distance is {kept}; with the overlap"
-                " alone it would be {free}. The preset Shape first leaves the sphericity free."
+                " alone it would be {free}. The preset Volume, diameters, overlap ignores the sphericity."
             ),
             kept=Number(self.jaccard_distance, ".3f"),
             free=Number(free, ".3f"),

@@ -45,9 +45,9 @@ class CoarseningSettings:
         "facets",
         N_("Stopping criterion"),
         N_("Which of n_facets, n_triangles, n_vertices and largest_error says how fine polyhedra are."),
-        symbol=N_("Stop at"),
+        symbol=N_("Limit"),
         choices={
-            "facets": N_("Facets n"),
+            "facets": N_("Facets"),
             "triangles": N_("Triangles"),
             "vertices": N_("Vertices"),
             "error": N_("Error ≤"),

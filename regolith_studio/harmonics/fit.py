@@ -34,13 +34,15 @@ HIDDEN_TOLERANCE = 0.01
 RADIAL_TOLERANCE = 0.05
 """Root-mean-square radial error, as a share of the mean radius, from which on a fit carries a warning."""
 MISSES = N_(
-    "The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher"
-    " l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
+    "RMS radius error up to l = {degree}: {error}; a higher l_max comes closer, and on flat or long grains so"
+    " does an ellipsoid as reference."
 )
 MISSES_AT_MOST = N_(
-    "The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most"
-    " {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
+    "RMS radius error up to l = {degree}: {error}, at most {most}; a higher l_max comes closer, and on flat"
+    " or long grains so does an ellipsoid as reference."
 )
+UNUSABLE = N_("RMS radius error up to l = {degree}: {error}, so that the fit cannot be used.")
+"""Where the error is as large as the radius."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +109,11 @@ class HarmonicFit:
         """The notes, and a sentence with the number where the expansion misses the radius."""
         if not self.radial_error > RADIAL_TOLERANCE:
             return self.notes
+        if self.radial_error >= 1.0:
+            return (
+                *self.notes,
+                Message(UNUSABLE, degree=self.l_max, error=Number(self.radial_error, ",.0%")),
+            )
         values = {"degree": self.l_max, "error": Number(self.radial_error, ".1%")}
         if self.largest_radial_error is None:
             return (*self.notes, Message(MISSES, **values))

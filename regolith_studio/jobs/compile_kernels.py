@@ -16,8 +16,8 @@ import numpy as np
 from regolith_studio.geometry.kernels import machine_code_folder
 from regolith_studio.io.child_process import end_with_parent, start_module
 from regolith_studio.io.output_lock import lock_file
-from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
-from regolith_studio.messages import N_, Message
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.messages import N_
 
 TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 10, "exact": 105}
 _METHODS = (*TASKS, "compound")
@@ -62,8 +62,8 @@ def compile_first(*tasks: str) -> Steps:
         return
     ours = _count_files(), sum(TASKS[task] for task in missing)
     before, total = next(iter(_announced), ours)
-    rate = ProgressRate(total)
-    yield Started(N_("Compiling, once after an installation"), total)
+    done = 0
+    yield Started(N_("First start: compiling"), total)
     process: subprocess.Popen[bytes] | None = None
     lock = -1
     try:
@@ -75,10 +75,8 @@ def compile_first(*tasks: str) -> Steps:
                     process = _compile_in_process(missing)
             elif process.poll() is not None:
                 break
-            rate.advance(min(_count_files() - before, total) - rate.done)
-            left = rate.seconds_left
-            text = "" if left is None else Message(N_("{duration} left"), duration=format_duration(left))
-            yield Progress(rate.done, total, text)
+            done = max(done, min(_count_files() - before, total))
+            yield Progress(done, total)  # no time left: kernels differ too much in theirs
             time.sleep(_POLL_SECONDS)
     finally:
         if process is not None:

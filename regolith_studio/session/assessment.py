@@ -81,7 +81,7 @@ def redundant_planes(coarsened: CoarseningResult) -> str | None:
 def cost_of_imitating_the_fit(comparison: ParticleComparison) -> str:
     """The largest error of a fit's polyhedron against the particle itself, as a sentence."""
     worst = max(LOSS_KEYS, key=lambda key: comparison.errors[key])
-    template = N_("Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.")
+    template = N_("Vs. particle: {symbol} {error}, Jaccard distance {distance}.")
     distance = _percent(comparison.jaccard_distance)
     return Message(
         template, symbol=CATALOGUE[worst].symbol, error=_percent(comparison.errors[worst]), distance=distance
@@ -99,7 +99,7 @@ def _met(coarsened: CoarseningResult, chosen: list[str]) -> str:
         return Message(template, symbol=CATALOGUE[worst].symbol, error=_percent(coarsened.errors[worst]))
     bound = max(chosen, key=lambda key: held[key])
     if held[bound] > CLOSE:
-        template = N_("All weighted descriptors are met but {symbol}: no convex polyhedron is below {error}.")
+        template = N_("Exact except {symbol} ({error}, the least possible).")
         return Message(template, symbol=CATALOGUE[bound].symbol, error=_percent(held[bound]))
     return N_("All weighted descriptors are met within 0.1 %.")
 

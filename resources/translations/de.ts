@@ -432,6 +432,10 @@
         <translation>Ein gezogenes Partikel</translation>
     </message>
     <message>
+        <source>A field drawn to its hull has l_max {low} to {high}, got {l_max}.</source>
+        <translation>Ein zur Hülle gezogenes Feld hat l_max {low} bis {high}, hier {l_max}.</translation>
+    </message>
+    <message>
         <source>A figure on white, 1860 × 560 times the scale</source>
         <translation>Eine Abbildung auf Weiß, 1860 × 560 mal der Maßstab</translation>
     </message>
@@ -560,12 +564,12 @@
         <translation>Nach: {title}.</translation>
     </message>
     <message>
-        <source>Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.</source>
-        <translation>Gegen das Partikel selbst weicht {symbol} um {error} ab, Jaccard-Distanz {distance}.</translation>
-    </message>
-    <message>
         <source>Algorithms step by step</source>
         <translation>Verfahren Schritt für Schritt</translation>
+    </message>
+    <message>
+        <source>All but volume</source>
+        <translation>Alle außer Volumen</translation>
     </message>
     <message>
         <source>All columns in their order</source>
@@ -610,10 +614,6 @@
     <message>
         <source>All that can be opened ({suffixes})</source>
         <translation>Alles, was geöffnet werden kann ({suffixes})</translation>
-    </message>
-    <message>
-        <source>All weighted descriptors are met but {symbol}: no convex polyhedron is below {error}.</source>
-        <translation>Alle gewichteten Deskriptoren sind getroffen außer {symbol}: Kein konvexes Polyeder liegt unter {error}.</translation>
     </message>
     <message>
         <source>All weighted descriptors are met within 0.1 %.</source>
@@ -1000,14 +1000,6 @@
         <translation>Änderungen der Fehler in Prozentpunkten</translation>
     </message>
     <message>
-        <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d</source>
-        <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d</translation>
-    </message>
-    <message>
-        <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d, of the plate {plate:.1f} %</source>
-        <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d, mit der Platte {plate:.1f} %</translation>
-    </message>
-    <message>
         <source>Checking the dataset</source>
         <translation>Datensatz wird geprüft</translation>
     </message>
@@ -1284,10 +1276,6 @@
         <translation>Vergleiche mit dem Partikel</translation>
     </message>
     <message>
-        <source>Compiling, once after an installation</source>
-        <translation>Wird kompiliert, einmal nach einer Installation</translation>
-    </message>
-    <message>
         <source>Complex, orthonormal, with the phase</source>
         <translation>Komplex, orthonormal, mit der Phase</translation>
     </message>
@@ -1378,10 +1366,6 @@
     <message>
         <source>Convex flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.</source>
         <translation>Konvexe Flanken: {top} Grad oben, {toe} Grad am Fuß; kein einheitlicher Winkel.</translation>
-    </message>
-    <message>
-        <source>Convex hull instead of volume</source>
-        <translation>Konvexe Hülle statt Volumen</translation>
     </message>
     <message>
         <source>Convex hull volume</source>
@@ -2016,6 +2000,10 @@
         <translation>Exakte Deskriptoren</translation>
     </message>
     <message>
+        <source>Exact except {symbol} ({error}, the least possible).</source>
+        <translation>Exakt außer {symbol} ({error}, das kleinstmögliche).</translation>
+    </message>
+    <message>
         <source>Exact method</source>
         <translation>Exaktes Verfahren</translation>
     </message>
@@ -2088,10 +2076,6 @@
         <translation>Facetten</translation>
     </message>
     <message>
-        <source>Facets n</source>
-        <translation>Facetten n</translation>
-    </message>
-    <message>
         <source>Facets of the open particles</source>
         <translation>Facetten der geöffneten Partikel</translation>
     </message>
@@ -2116,8 +2100,8 @@
         <translation>Merkmale nur in Schichten</translation>
     </message>
     <message>
-        <source>Fewer facets make the simulation faster. The title of the view states the numbers of facets, vertices and triangles; a note appears here if a request cannot be met.</source>
-        <translation>Weniger Facetten machen die Simulation schneller. Der Titel der Ansicht nennt die Anzahl der Facetten, Ecken und Dreiecke; hier erscheint ein Hinweis, wenn eine Anforderung nicht erfüllbar ist.</translation>
+        <source>Fewer facets make the simulation faster. The title of the view states the numbers of facets, vertices and triangles; a note appears below the weights if a request cannot be met.</source>
+        <translation>Weniger Facetten machen die Simulation schneller. Der Titel der Ansicht nennt die Anzahl der Facetten, Ecken und Dreiecke; unter den Gewichten erscheint ein Hinweis, wenn eine Anforderung nicht erfüllbar ist.</translation>
     </message>
     <message>
         <source>Fewer than {count} particles: the cut at the toe changes the angle by some degrees, included in the interval.</source>
@@ -2260,10 +2244,6 @@
         <translation>Die Körner in einem CT-Volumen finden und Partikel daraus machen</translation>
     </message>
     <message>
-        <source>Find the sufficient number</source>
-        <translation>Genügende Anzahl suchen</translation>
-    </message>
-    <message>
         <source>Finding connected bodies</source>
         <translation>Zusammenhängende Körper werden gesucht</translation>
     </message>
@@ -2290,6 +2270,10 @@
     <message>
         <source>First crossing</source>
         <translation>Erster Durchstoß</translation>
+    </message>
+    <message>
+        <source>First start: compiling</source>
+        <translation>Erster Start: Kompilieren</translation>
     </message>
     <message>
         <source>First-order share [%]</source>
@@ -2904,8 +2888,8 @@
         <translation>Körner nach ihrer Klasse behalten, teilen oder verwerfen</translation>
     </message>
     <message>
-        <source>Keeping the descriptors costs overlap: the Jaccard distance is {kept}; with the overlap alone it would be {free}. The preset Shape first leaves the sphericity free.</source>
-        <translation>Die Deskriptoren einzuhalten kostet Überdeckung: Die Jaccard-Distanz ist {kept}; mit der Überdeckung allein wäre sie {free}. Die Vorlage „Form zuerst“ lässt die Sphärizität frei.</translation>
+        <source>Keeping the descriptors costs overlap: the Jaccard distance is {kept}; with the overlap alone it would be {free}. The preset Volume, diameters, overlap ignores the sphericity.</source>
+        <translation>Die Deskriptoren einzuhalten kostet Überdeckung: Die Jaccard-Distanz ist {kept}; mit der Überdeckung allein wäre sie {free}. Die Vorlage „Volumen, Durchmesser, Überdeckung“ lässt die Sphärizität außer Acht.</translation>
     </message>
     <message>
         <source>Kept if equal, else new</source>
@@ -3106,6 +3090,10 @@
     <message>
         <source>Light</source>
         <translation>Hell</translation>
+    </message>
+    <message>
+        <source>Limit</source>
+        <translation>Grenze</translation>
     </message>
     <message>
         <source>Limit the equivalent radius</source>
@@ -3696,8 +3684,8 @@
         <translation>Es wurde kein Polyeder gefunden, dessen Fehler alle unter {limit} % liegen, mit bis zu {faces} Facetten: Der kleinste ist {error} %, mit {count} Facetten.</translation>
     </message>
     <message>
-        <source>No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}. A weight of 0 frees a descriptor.</source>
-        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft; dieses verfehlt {missed}. Ein Gewicht von 0 gibt einen Deskriptor frei.</translation>
+        <source>No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}. Set a weight to 0 to ignore a descriptor.</source>
+        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft; dieses verfehlt {missed}. Mit Gewicht 0 bleibt ein Deskriptor außer Acht.</translation>
     </message>
     <message>
         <source>No run can be used, so that there is no value: take 1,000 particles or more.</source>
@@ -4300,6 +4288,10 @@
         <translation>Gezeigte Partikel</translation>
     </message>
     <message>
+        <source>Particles that can be turned need l_max of at least 1, got 0.</source>
+        <translation>Partikel, die gedreht werden können, brauchen l_max von mindestens 1, hier 0.</translation>
+    </message>
+    <message>
         <source>Parts overlap or touch</source>
         <translation>Teile überlappen oder berühren sich</translation>
     </message>
@@ -4526,6 +4518,18 @@
     <message>
         <source>Quantity</source>
         <translation>Größe</translation>
+    </message>
+    <message>
+        <source>RMS radius error up to l = {degree}: {error}, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
+        <translation>RMS-Fehler des Radius bis l = {degree}: {error}, höchstens {most}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
+    </message>
+    <message>
+        <source>RMS radius error up to l = {degree}: {error}, so that the fit cannot be used.</source>
+        <translation>RMS-Fehler des Radius bis l = {degree}: {error}, sodass die Anpassung unbrauchbar ist.</translation>
+    </message>
+    <message>
+        <source>RMS radius error up to l = {degree}: {error}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
+        <translation>RMS-Fehler des Radius bis l = {degree}: {error}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
     </message>
     <message>
         <source>RMSRE [%], at least {least:g}</source>
@@ -5352,10 +5356,6 @@
         <translation>Form</translation>
     </message>
     <message>
-        <source>Shape first</source>
-        <translation>Form zuerst</translation>
-    </message>
-    <message>
         <source>Shape model</source>
         <translation>Formmodell</translation>
     </message>
@@ -5600,8 +5600,8 @@
         <translation>Sphärizität</translation>
     </message>
     <message>
-        <source>Sphericity and convex hull volume are free: the most overlap at the particle&apos;s volume and diameters</source>
-        <translation>Sphärizität und Volumen der konvexen Hülle sind frei: die größte Überdeckung bei Volumen und Durchmessern des Partikels</translation>
+        <source>Sphericity and convex hull volume are ignored: the most overlap at the particle&apos;s volume and diameters</source>
+        <translation>Sphärizität und Volumen der konvexen Hülle bleiben außer Acht: die größte Überdeckung bei Volumen und Durchmessern des Partikels</translation>
     </message>
     <message>
         <source>Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}.</source>
@@ -5764,10 +5764,6 @@
         <translation>Abbrechen und schließen</translation>
     </message>
     <message>
-        <source>Stop at</source>
-        <translation>Ende bei</translation>
-    </message>
-    <message>
         <source>Stop the running task</source>
         <translation>Laufende Aufgabe abbrechen</translation>
     </message>
@@ -5838,6 +5834,10 @@
     <message>
         <source>Sufficient facets</source>
         <translation>Ausreichende Facetten</translation>
+    </message>
+    <message>
+        <source>Suggest n</source>
+        <translation>n vorschlagen</translation>
     </message>
     <message>
         <source>Surface</source>
@@ -6088,14 +6088,6 @@
         <translation>Die Entwicklung bis l = {degree} hat negative Radien und begrenzt keinen Körper: Wählen Sie ein anderes l_max, einen anderen Sternpunkt oder Bezug.</translation>
     </message>
     <message>
-        <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
-        <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}, höchstens um {most}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
-    </message>
-    <message>
-        <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
-        <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
-    </message>
-    <message>
         <source>The exports are in {folder}.</source>
         <translation>Die Exporte sind in {folder}.</translation>
     </message>
@@ -6308,6 +6300,10 @@
         <translation>Das Polyeder ist noch nicht fertig.</translation>
     </message>
     <message>
+        <source>The program made a mistake ({kind}: {error}).</source>
+        <translation>Das Programm hat einen Fehler gemacht ({kind}: {error}).</translation>
+    </message>
+    <message>
         <source>The proposal, T(k) and the decision with their numbers</source>
         <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
     </message>
@@ -6354,6 +6350,10 @@
     <message>
         <source>The sample</source>
         <translation>Die Probe</translation>
+    </message>
+    <message>
+        <source>The sample is expanded to l_max = {top}, so it has no l_max = {l_max}.</source>
+        <translation>Die Probe ist bis l_max = {top} entwickelt und hat daher kein l_max = {l_max}.</translation>
     </message>
     <message>
         <source>The scan {path} has been moved or changed since the project was saved. Open it from its new place: the project keeps its corrections until then.</source>
@@ -6464,6 +6464,10 @@
         <translation>Die ganze Probe</translation>
     </message>
     <message>
+        <source>The work needs more memory than this machine has.</source>
+        <translation>Die Arbeit braucht mehr Speicher, als dieser Rechner hat.</translation>
+    </message>
+    <message>
         <source>The x-z and the y-z section give {paper} degrees, outside of the interval of all sections: the heap is not round, and its angle depends on the direction.</source>
         <translation>Die Schnitte x-z und y-z ergeben {paper} Grad, außerhalb des Intervalls aller Schnitte: der Haufen ist nicht rund, und sein Winkel hängt von der Richtung ab.</translation>
     </message>
@@ -6534,6 +6538,14 @@
     <message>
         <source>Thickness to width</source>
         <translation>Dicke zu Breite</translation>
+    </message>
+    <message>
+        <source>This hull field is drawn with l_max = {top} only, got l_max = {l_max}.</source>
+        <translation>Dieses Hüllenfeld wird nur mit l_max = {top} gezogen, hier l_max = {l_max}.</translation>
+    </message>
+    <message>
+        <source>This hull field is drawn with l_max from {base} to {top}, got l_max = {l_max}.</source>
+        <translation>Dieses Hüllenfeld wird mit l_max von {base} bis {top} gezogen, hier l_max = {l_max}.</translation>
     </message>
     <message>
         <source>This one misses {missed}.</source>
@@ -6856,6 +6868,10 @@
         <translation>Volumen in der Datei</translation>
     </message>
     <message>
+        <source>Volume, diameters, overlap</source>
+        <translation>Volumen, Durchmesser, Überdeckung</translation>
+    </message>
+    <message>
         <source>Volume, surface area, aspect ratio</source>
         <translation>Volumen, Oberfläche, Seitenverhältnis</translation>
     </message>
@@ -6890,6 +6906,10 @@
     <message>
         <source>Voxels x, y, z</source>
         <translation>Voxel x, y, z</translation>
+    </message>
+    <message>
+        <source>Vs. particle: {symbol} {error}, Jaccard distance {distance}.</source>
+        <translation>Gegen das Partikel: {symbol} {error}, Jaccard-Distanz {distance}.</translation>
     </message>
     <message>
         <source>W / F_max</source>
@@ -8648,6 +8668,14 @@
         <translation>{count:,} Partikel aus {name}</translation>
     </message>
     <message>
+        <source>{count:,} particles, overlap ≤ {overlap:.1f} % d</source>
+        <translation>{count:,} Partikel, Überlappung ≤ {overlap:.1f} % d</translation>
+    </message>
+    <message>
+        <source>{count:,} particles, overlap ≤ {overlap:.1f} % d, with the plate ≤ {plate:.1f} % d</source>
+        <translation>{count:,} Partikel, Überlappung ≤ {overlap:.1f} % d, mit der Platte ≤ {plate:.1f} % d</translation>
+    </message>
+    <message>
         <source>{count:,} triangles</source>
         <translation>{count:,} Dreiecke</translation>
     </message>
@@ -8854,10 +8882,6 @@
     <message>
         <source>{drawn} of the {count} open particles were drawn: a fit to them repeats a model.</source>
         <translation>{drawn} der {count} geöffneten Partikel sind gezogen: Eine Anpassung an sie wiederholt ein Modell.</translation>
-    </message>
-    <message>
-        <source>{duration} left</source>
-        <translation>noch {duration}</translation>
     </message>
     <message>
         <source>{edges} voxels, {dtype}.</source>
@@ -9176,8 +9200,8 @@
         <translation>{surface:.2%} der Oberfläche sind vom Sternpunkt aus verdeckt; {volume:.2%} des Volumens lassen sich nicht darstellen.</translation>
     </message>
     <message>
-        <source>{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors against the particle: {errors}.</source>
-        <translation>{symbol} = {degree}: {shape}. Der Radius wird im quadratischen Mittel um {missed:.1%} verfehlt; Fehler gegen das Partikel: {errors}.</translation>
+        <source>{symbol} = {degree}: {shape}. RMS radius error {missed:.1%}; errors against the particle: {errors}.</source>
+        <translation>{symbol} = {degree}: {shape}. RMS-Fehler des Radius {missed:.1%}; Fehler gegen das Partikel: {errors}.</translation>
     </message>
     <message>
         <source>{symbol}, {name}: {formula}</source>

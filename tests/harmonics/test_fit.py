@@ -1,6 +1,7 @@
 """Fits of shapes with closed forms, their warnings, and what is refused."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -87,6 +88,8 @@ def test_that_a_flat_grain_is_missed_and_an_ellipsoid_as_reference_comes_closer(
     assert "at most" in about_sphere.warnings[0]
     assert about_ellipsoid.radial_error < about_sphere.radial_error / 5
     assert about_ellipsoid.warnings == ()
+    unusable = replace(about_sphere, radial_error=37.323).warnings
+    assert unusable[-1] == "RMS radius error up to l = 10: 3,732%, so that the fit cannot be used."
 
 
 def test_that_a_truncated_fit_has_the_error_of_a_fit_to_that_degree(ellipsoid):

@@ -56,8 +56,8 @@ def compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Compil
 
 def test_that_compiling_is_said_and_done_once(compiler: Compiler) -> None:
     said = list(compile_first("fit", "describe"))
-    assert said[0] == Started("Compiling, once after an installation", TASKS["fit"] + TASKS["describe"])
-    assert all(isinstance(step, Progress) for step in said[1:])
+    assert said[0] == Started("First start: compiling", TASKS["fit"] + TASKS["describe"])
+    assert all(isinstance(step, Progress) and not step.message for step in said[1:])
     assert is_compiled("fit")
     assert is_compiled("describe")
     assert list(compile_first("fit", "describe")) == []
@@ -77,7 +77,7 @@ def test_that_all_who_wait_announce_the_total_of_what_is_compiled(compiler: Comp
     first = compile_first("read", "fit", "describe")
     total = next(first).total
     next(first)  # the process runs
-    assert next(compile_first("read")) == Started("Compiling, once after an installation", total)
+    assert next(compile_first("read")) == Started("First start: compiling", total)
     list(first)
     compiler.folder.joinpath("read").unlink()
     assert next(compile_first("read")).total == TASKS["read"]
@@ -142,7 +142,7 @@ def test_that_quadrics_are_shown_while_the_exact_method_is_compiled(compiler: Co
 def test_that_jobs_of_pages_compile_what_they_need_in_another_process(tasks, job) -> None:
     steps = job()
     files = sum(TASKS[task] for task in tasks.split())
-    assert next(steps) == Started("Compiling, once after an installation", files)
+    assert next(steps) == Started("First start: compiling", files)
     steps.close()
 
 

@@ -135,7 +135,7 @@ def test_that_explore_finds_and_takes_the_number_of_facets_from_which_on_nothing
         assert window.session.choices.n_facets == offered
     window.session.choose(seed=3)
     settled(window, SECONDS)
-    assert button.text() == "Find the sufficient number"
+    assert button.text() == "Suggest n"
 
 
 def test_that_a_number_of_facets_found_by_its_loss_is_explained_by_the_loss(window, settled, wait):

@@ -86,7 +86,9 @@ def test_that_a_sentence_goes_below_its_figures_where_it_is_narrow_and_high(widt
     assert (tops[0] > tops[1]) == below
     before = card.height()
     card.show_record(
-        ResultRecord(("0.4583", "9.32 %", "23.0 %"), note="All weighted descriptors are met but CH. " * 4)
+        ResultRecord(
+            ("0.4583", "9.32 %", "23.0 %"), note="Exact except CH (22.8 %, the least possible). " * 4
+        )
     )
     app.processEvents()
     assert card.height() == before

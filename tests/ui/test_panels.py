@@ -419,10 +419,13 @@ def test_that_a_failure_is_on_the_card_and_the_curve_is_gone(shown):
 def test_that_a_button_names_what_it_does_and_the_finding_stands_below_it(shown):
     panel = shown(CoarseningPanel())
     panel.show_search(running=True)
-    assert (panel.enough.text(), panel.finding.text()) == ("Find the sufficient number", "Searching …")
+    assert (panel.enough.text(), panel.finding.text()) == ("Suggest n", "Searching …")
     panel.show_sufficient(50, saturated=False, now=20, reason="")
     assert (panel.enough.text(), panel.finding.text()) == ("Use 50 facets", "Errors still fall at 50 facets.")
     panel.show_search(running=False)
+    assert panel.finding.text() == "Coarsens this particle at several numbers of facets."
+    assert panel.finding.isVisible(), "no empty strip below the button"
+    panel.setValue(panel.value() | {"stop_at": "error"})
     assert not panel.finding.isVisible()
 
 

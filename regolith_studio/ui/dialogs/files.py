@@ -224,7 +224,7 @@ class _EmptyCompletions(QObject):
 
     def _close(self) -> None:
         if not self._line.text():
-            QTimer.singleShot(0, self, self._completions.hide)
+            QTimer.singleShot(0, self._completions, self._completions.hide)
 
 
 def ask_for_files(parent: QWidget | None, title: str, folder: str, kinds: str) -> list[Path]:

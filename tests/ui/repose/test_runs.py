@@ -203,7 +203,7 @@ def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_windo
 def test_that_a_drum_is_checked_without_a_plate(tmp_path):
     checks = {"problems": [], "particles_out": 300, "max_overlap": 0.017, "plate_depth": 0.0}
     run = RunSummary(tmp_path, {"checks": checks, "case": {"drum": {"rpm": 10.0}}})
-    assert checks_text(run) == "Checked: 300 particles, overlap at most 1.7 % of d"
+    assert checks_text(run) == "300 particles, overlap ≤ 1.7 % d"
 
 
 def test_that_a_project_shows_its_run_again_or_says_that_it_is_gone(page, tmp_path, wait):

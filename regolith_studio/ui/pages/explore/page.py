@@ -52,7 +52,13 @@ from regolith_studio.ui.layout import (
     vbox,
 )
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.explore.panels import AssessmentPanel, CoarseningPanel, FitPanel, LossPanel
+from regolith_studio.ui.pages.explore.panels import (
+    AssessmentPanel,
+    CoarseningPanel,
+    FitPanel,
+    LossPanel,
+    OutcomeNote,
+)
 from regolith_studio.ui.pages.explore.plots import PlotArea
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.views.three_views import ThreeViews
@@ -378,7 +384,7 @@ class ExplorePage(PageWidget):
         self.setObjectName("explore")
         self._session, self._commands = context.session, context.commands
         self.particles, self.fit = ParticleListPanel(), FitPanel()
-        self.coarsening, self.loss = CoarseningPanel(), LossPanel()
+        self.coarsening, self.loss, self.outcome = CoarseningPanel(), LossPanel(), OutcomeNote()
         self.three_views = ThreeViews(context.views, self._measure_distances)
         self.plots = PlotArea(self.three_views)
         self.assessment = AssessmentPanel()
@@ -433,7 +439,7 @@ class ExplorePage(PageWidget):
         middle = stacked([self.three_views, below], [480, max(400, high_enough)], stretch=0)
         middle.setStretchFactor(1, 1)  # views wider than high would leave their sides empty
         middle.setObjectName("explore_rows")
-        controls = scrolled_column([self.fit, self.coarsening, self.loss])
+        controls = scrolled_column([self.fit, self.coarsening, self.loss, self.outcome])
         self._list = padded(self.particles, 10, 10, 2, 8)
         results = side_by_side([self._list, padded(middle, 2, 10, 2, 8)], [LIST_WIDTH, 800], stretch=1)
         for part, share in enumerate((1, 4)):
@@ -537,4 +543,4 @@ class ExplorePage(PageWidget):
         coarse = results.coarsened
         notes = (coarse.reason or redundant_planes(coarse), coarse.warning) if coarse else ()
         said = [each for each in (*notes, results.failures.get("coarsening")) if each]
-        self.coarsening.set_outcome(join_messages(said) if said else None)
+        self.outcome.set_sentence(join_messages(said) if said else None)

@@ -368,7 +368,20 @@ AMOUNTS = {
 }
 """Setting of each stopping criterion."""
 NOTES, LEAST_NOTES = 5, 2
-"""Lines for what a search and the result say, whole where one descriptor is missed; and in low windows."""
+"""Lines for what the result says, whole where one descriptor is missed; and in low windows."""
+
+
+class OutcomeNote(FixedHeightText):
+    """Why a request could not be met, or what meeting it costs; below the controls, which stay in place."""
+
+    def __init__(self) -> None:
+        self.words = hint_label(role="warning")
+        super().__init__((self.words,), NOTES, LEAST_NOTES)
+
+    def set_sentence(self, sentence: str | None) -> None:
+        words = translate(sentence) if sentence else ""
+        self.words.setText(words)
+        self.words.setToolTip(inert(words))
 
 
 class CoarseningPanel(QWidget):
@@ -385,7 +398,7 @@ class CoarseningPanel(QWidget):
         self._sufficient = 0
         self.enough = named(QPushButton(), "sufficient_facets")
         self.finding = hint_label()
-        self.finding.hide()
+        self._found = FixedHeightText((self.finding,))
         methods = {"method": {key: method.label for key, method in METHODS.items()}}
         names = ("method", "target", "seed", "stop_at")
         self._form = SettingsForm(CoarseningSettings, methods, names, "")
@@ -408,8 +421,6 @@ class CoarseningPanel(QWidget):
         self._settings.setContentsMargins(14, 0, 0, 0)
         self.more = Collapsible(tr("Settings of the method"), inside)
         self.more.button.setObjectName("method_settings")
-        self.outcome = hint_label(role="warning")
-        self.outcome.hide()
         self.set_theme(current_theme())
         self._arrange()
         self._connect()
@@ -431,20 +442,14 @@ class CoarseningPanel(QWidget):
         if form := self._forms.get(value["method"]):
             form.setValue(dict(value["settings"]))
 
-    def set_outcome(self, sentence: str | None) -> None:
-        """Show why a request could not be met, what meeting it costs, or nothing."""
-        words = translate(sentence) if sentence else ""
-        self.outcome.setText(words)
-        self.outcome.setToolTip(inert(words))
-        self.outcome.setVisible(bool(sentence))
-
     def show_search(self, *, running: bool) -> None:
         """Offer to search the number of facets from which on nothing is gained."""
         self._sufficient = 0
-        self.enough.setText(tr("Find the sufficient number"))
-        self.enough.setToolTip(tr("Coarsens this particle at several numbers of facets."))
+        self.enough.setText(tr("Suggest n"))
+        self.enough.setToolTip("")
         self.enough.setEnabled(not running)
-        self._show_finding(tr("Searching …") if running else "")
+        idle = tr("Coarsens this particle at several numbers of facets.")
+        self.finding.setText(tr("Searching …") if running else idle)
 
     def show_sufficient(self, count: int, *, saturated: bool, now: int, reason: str) -> None:
         """Show the number of facets from which on nothing is gained below the button, which takes it.
@@ -460,14 +465,10 @@ class CoarseningPanel(QWidget):
             if saturated
             else tr("Errors still fall at {count} facets.", count=count)
         )
-        self._show_finding(found)
+        self.finding.setText(found)
         self.enough.setText(tr("Use {count} facets", count=count))
         self.enough.setToolTip(reason)
         self.enough.setEnabled(now != count)
-
-    def _show_finding(self, words: str) -> None:
-        self.finding.setText(words)
-        self.finding.setVisible(bool(words) and self.stop_at.value() == "facets")
 
     def set_theme(self, theme: Theme) -> None:
         self.dice.setIcon(icon("dice", theme.text, theme.muted))
@@ -500,7 +501,7 @@ class CoarseningPanel(QWidget):
             self._form,
             self._sizes,
             self.enough,
-            FixedHeightText((self.finding, self.outcome), NOTES, LEAST_NOTES),
+            self._found,
             self.more,
             parent=self,
         )
@@ -537,7 +538,7 @@ class CoarseningPanel(QWidget):
             slider.setVisible(key == self.stop_at.value())
         by_number = self.stop_at.value() == "facets"
         self.enough.setVisible(by_number)
-        self.finding.setVisible(by_number and bool(self.finding.text()))
+        self._found.setVisible(by_number)
 
     def _show_settings(self) -> None:
         key = self.method.value()

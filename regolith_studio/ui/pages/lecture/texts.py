@@ -183,8 +183,7 @@ def degree_sentence(step: DegreeStep) -> str:
         for key, value in step.errors.items()
     )
     return tr(
-        "{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors"
-        " against the particle: {errors}.",
+        "{symbol} = {degree}: {shape}. RMS radius error {missed:.1%}; errors against the particle: {errors}.",
         symbol=DEGREE,
         degree=step.l_max,
         shape=shape,

@@ -172,12 +172,10 @@ def checks_text(run: RunSummary) -> str:
     overlap = 100 * checks["max_overlap"]
     count = checks["particles_out"]
     if run.document.get("case", {}).get("drum"):  # has no plate
-        checked = tr(
-            "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d", count=count, overlap=overlap
-        )
+        checked = tr("{count:,} particles, overlap ≤ {overlap:.1f} % d", count=count, overlap=overlap)
     else:
         checked = tr(
-            "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d, of the plate {plate:.1f} %",
+            "{count:,} particles, overlap ≤ {overlap:.1f} % d, with the plate ≤ {plate:.1f} % d",
             count=count,
             overlap=overlap,
             plate=100 * checks["plate_depth"],
