@@ -221,8 +221,7 @@ def _about_hidden(fit: HarmonicFit) -> tuple[str, ...]:
     if not fit.hidden_surface_share > HIDDEN_TOLERANCE:
         return ()
     template = N_(
-        "Hidden from the star point: {surface} of the surface, {volume} of the volume."
-        " A radius function cannot represent them."
+        "Hidden from the star point and not represented: {surface} of the surface, {volume} of the volume."
     )
     surface, volume = Number(fit.hidden_surface_share, ".1%"), Number(fit.unrepresentable_volume_share, ".1%")
     return (Message(template, surface=surface, volume=volume),)

@@ -2656,12 +2656,12 @@
         <translation>Hertz, Mindlin-Deresiewicz, JKR: das Paarpotential ist linear</translation>
     </message>
     <message>
-        <source>Hidden from the star point, so that no radius function can represent it</source>
-        <translation>Vom Sternpunkt aus verdeckt, sodass keine Radiusfunktion es darstellen kann</translation>
+        <source>Hidden from the star point and not represented: {surface} of the surface, {volume} of the volume.</source>
+        <translation>Vom Sternpunkt aus verdeckt und nicht dargestellt: {surface} der Oberfläche, {volume} des Volumens.</translation>
     </message>
     <message>
-        <source>Hidden from the star point: {surface} of the surface, {volume} of the volume. A radius function cannot represent them.</source>
-        <translation>Vom Sternpunkt aus verdeckt: {surface} der Oberfläche, {volume} des Volumens. Eine Radiusfunktion kann sie nicht wiedergeben.</translation>
+        <source>Hidden from the star point, so that no radius function can represent it</source>
+        <translation>Vom Sternpunkt aus verdeckt, sodass keine Radiusfunktion es darstellen kann</translation>
     </message>
     <message>
         <source>Hidden surface</source>

@@ -51,11 +51,11 @@ def test_that_the_overlap_that_descriptors_cost_is_told_beside_the_choices(windo
     coarse = window.session.results.coarsened
     window.session.update("coarsening", coarsened=replace(coarse, free_jaccard_distance=None))
     settled(window)
-    assert not window.page.coarsening.outcome.isVisible()
+    assert not window.page.outcome.words.text()
     free = coarse.jaccard_distance / 2
     window.session.update("coarsening", coarsened=replace(coarse, free_jaccard_distance=free))
     settled(window)
-    assert f"with the overlap alone it would be {free:.3f}" in window.page.coarsening.outcome.text()
+    assert f"with the overlap alone it would be {free:.3f}" in window.page.outcome.words.text()
 
 
 @pytest.mark.slow

@@ -439,7 +439,9 @@ class ExplorePage(PageWidget):
         middle = stacked([self.three_views, below], [480, max(400, high_enough)], stretch=0)
         middle.setStretchFactor(1, 1)  # views wider than high would leave their sides empty
         middle.setObjectName("explore_rows")
-        controls = scrolled_column([self.fit, self.coarsening, self.loss, self.outcome])
+        weights = QWidget()
+        vbox(self.loss, self.outcome, parent=weights, spacing=0)
+        controls = scrolled_column([self.fit, self.coarsening, weights])
         self._list = padded(self.particles, 10, 10, 2, 8)
         results = side_by_side([self._list, padded(middle, 2, 10, 2, 8)], [LIST_WIDTH, 800], stretch=1)
         for part, share in enumerate((1, 4)):

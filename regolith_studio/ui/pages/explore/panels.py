@@ -367,7 +367,7 @@ AMOUNTS = {
     "error": "largest_error",
 }
 """Setting of each stopping criterion."""
-NOTES, LEAST_NOTES = 5, 2
+NOTES, LEAST_NOTES = 5, 1
 """Lines for what the result says, whole where one descriptor is missed; and in low windows."""
 
 
@@ -398,7 +398,7 @@ class CoarseningPanel(QWidget):
         self._sufficient = 0
         self.enough = named(QPushButton(), "sufficient_facets")
         self.finding = hint_label()
-        self._found = FixedHeightText((self.finding,))
+        self._found = FixedHeightText((self.finding,), NOTE_LINES, LEAST_NOTES)
         methods = {"method": {key: method.label for key, method in METHODS.items()}}
         names = ("method", "target", "seed", "stop_at")
         self._form = SettingsForm(CoarseningSettings, methods, names, "")
