@@ -24,7 +24,7 @@ from regolith_studio.dem.engine import (
 from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message, Number
 from regolith_studio.settings import setting
 
 LOOK = 0.5
@@ -253,8 +253,9 @@ def halved_step(step: float, speeds: FloatArray, max_move: float, smallest_share
 def steps_note(times: dict[float, float]) -> str:
     """Sentence on the steps of a run, from the simulated time with each of them."""
     shares = {step: time / sum(times.values()) for step, time in sorted(times.items(), reverse=True)}
-    parts = ", ".join(f"{step:.3g} for {100 * share:.1f} %" for step, share in shares.items())
-    return f"Time step in sqrt(d/g), by what moved: {parts} of the simulated time."
+    steps = "; ".join(f"{step:.3g} ({100 * share:.1f} %)" for step, share in shares.items())
+    template = N_("Time steps in sqrt(d/g), with their shares of the simulated time, by what moved: {steps}.")
+    return Message(template, steps=Number.of_text(steps))
 
 
 def diverged(time: float, unit: float, step: float) -> RegolithError:

@@ -206,6 +206,23 @@ def test_that_a_drum_is_checked_without_a_plate(tmp_path):
     assert checks_text(run) == "300 particles, overlap ≤ 1.7 % d"
 
 
+def test_that_a_run_that_is_shown_again_offers_longer_ones_and_stays(page, dataset, tmp_path, wait):
+    page.setup.set_dataset(dataset)
+    wait(lambda: page._prepared is not None)
+    run = tmp_path / "run"
+    run.mkdir()
+    save_result(run, STOPPED, pile_of(30.0), 1.0)
+    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
+    page._show_run(read_run(run))
+    kept = json.loads(json.dumps(page.state()))
+    page._show_nothing("")
+    page._prepared = None
+    page.restore(kept)
+    wait(lambda: page._prepared is not None and page._measured is not None)
+    assert not page.limits.buttons[1].isHidden()
+    assert page._shown_run == run
+
+
 def test_that_a_project_shows_its_run_again_or_says_that_it_is_gone(page, tmp_path, wait):
     run = tmp_path / "run"
     run.mkdir()

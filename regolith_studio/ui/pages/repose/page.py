@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
-from regolith_studio.dem.case import PreparedCase, scaling_report, with_number
+from regolith_studio.dem.case import PreparedCase, ScalingReport, scaling_report, with_number
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import (
@@ -396,10 +396,9 @@ class ReposePage(PageWidget):
 
     def _refuse(self, problem: str) -> None:
         """Show why the case of the set-up cannot be run."""
-        self.setup.show_consequences([], problem)
         if not self._under_way():
             self._show_nothing(translate(problem), ResultState.FAILED)
-        self._offer_run()
+        self._note_problem(problem)
 
     def _offer_run(self) -> None:
         """Let the button of the card start what can be started, or say in its tool tip why nothing can."""
@@ -408,10 +407,7 @@ class ReposePage(PageWidget):
         self.angle.set_startable(self.setup.problem_of_run() if has_dataset else "")
 
     def _show_preview(self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState) -> None:
-        self._prepared = (prepared, request)
-        report = scaling_report(prepared)
-        self.setup.show_consequences([*map(translate, (*prepared.filling_notes, *report.sentences))])
-        self._offer_run()
+        report = self._take_prepared(request, prepared)
         scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
         scale = CaseScale(len(prepared), report.diameters_across, report.coarse_graining)
         self.limits.show_scale(scale, self._seconds)
@@ -431,6 +427,42 @@ class ReposePage(PageWidget):
                 name=translate(prepared.dataset_name),
             ),
         )
+
+    def _take_prepared(self, request: ReposeRequest, prepared: PreparedCase) -> ScalingReport:
+        self._prepared = (prepared, request)
+        report = scaling_report(prepared)
+        self.setup.show_consequences([*map(translate, (*prepared.filling_notes, *report.sentences))])
+        self._offer_run()
+        return report
+
+    def _prepare_behind(self, run: RunSummary) -> None:
+        """Draw the particles of the set-up for the times at the buttons; the run that is shown stays."""
+        if self.setup.dataset is None:
+            return
+        try:
+            request = self.setup.request()
+        except RegolithError as error:
+            self._note_problem(str(error))
+            return
+
+        def take(drawn: tuple[PreparedCase, ParticleState]) -> None:
+            self._take_prepared(request, drawn[0])
+            if self._shown_run == run.folder:
+                self.limits.show_scale(scale_of_run(run.document), self._seconds)
+
+        job = Job(preview_repose, (self.setup.dataset, request))
+        self._context.start(
+            tr("Drawing particles"),
+            job,
+            take,
+            failed=lambda each: self._note_problem(each.sentence),
+            queue=PREVIEW,
+            repeats=True,
+        )
+
+    def _note_problem(self, problem: str) -> None:
+        self.setup.show_consequences([], problem)
+        self._offer_run()
 
     def _seconds(self, count: int) -> float:
         """Estimated time of a run of the set-up with so many particles."""
@@ -499,6 +531,8 @@ class ReposePage(PageWidget):
             self._show_nothing(tr("This run was not finished: {state}.", state=tr(state)), failed)
         self._shown_run = run.folder
         self.limits.show_scale(scale_of_run(run.document), self._seconds if self._prepared else None)
+        if self._prepared is None and not self._under_way():
+            self._prepare_behind(run)
 
     def _show_drum(self) -> None:
         """Show the angles of a drum beside the user's own."""
