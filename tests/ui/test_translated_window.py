@@ -178,6 +178,19 @@ def test_that_the_scale_of_the_distances_has_a_decimal_comma(opened, speaking, m
     assert texts == ["-0,8 µm", "0 µm", "0,8 µm"]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_that_the_controls_of_a_dataset_do_not_scroll_on_a_large_screen(opened, speaking, language, wait):
+    speaking(language)
+    window = opened()
+    window.resize(1912, 1040)
+    page = window.go("dataset")
+    page.targets.coarse_graining.setValue(1.0)
+    wait(lambda: not page.targets.enlarge.isHidden())  # the foot is as high as it gets
+    column = page.findChild(QScrollArea, "controls")
+    wait(lambda: column.height() > 700 and column.verticalScrollBar().maximum() == 0, 10.0)
+
+
 def test_that_no_two_commands_of_a_german_menu_have_the_same_letter(opened, speaking):
     speaking("de")
     window = opened()

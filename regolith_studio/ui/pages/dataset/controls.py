@@ -19,7 +19,7 @@ from regolith_studio.jobs.dataset_jobs import RepresentativesRequest
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.settings import setting_of
-from regolith_studio.ui.layout import named, vbox
+from regolith_studio.ui.layout import STRETCH, hbox, named, vbox
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec, choice
@@ -65,9 +65,9 @@ class RepresentativesPanel(QWidget):
         self.weighting = choice("dataset_weighting", spoken, WEIGHTINGS)
         self.start.setObjectName("dataset_find")
         self.count.field.setObjectName("dataset_count")
+        self.population.setWordWrap(False)
         vbox(
-            heading(tr("1  Particles")),
-            FixedHeightText((self.population,)),
+            hbox(heading(tr("1  Particles")), STRETCH, self.population),
             self.which,
             self.weighting,
             self.count,
@@ -97,7 +97,7 @@ class RepresentativesPanel(QWidget):
         self.population.setText(
             tr_count(N_("1 particle is open."), N_("{count:,} particles are open."), n_particles)
             if n_particles
-            else tr("No particles are open: open files, the sample, or draw some on the page Shape model.")
+            else tr("No particles are open.")
         )
         self._several = n_particles > 1
         self._enable()
@@ -210,18 +210,14 @@ class FolderPanel(QWidget):
         super().__init__()
         self.setObjectName("dataset_folder")
         self.name = named(QLineEdit("regolith"), "dataset_name", tr("Name of the dataset"))
-        self.shapes, self.state = hint_label(), hint_label()
+        self.shapes = hint_label()
         self.open = named(QPushButton(tr("Open a dataset …")), "dataset_open")
-        asked, there = FixedHeightText((self.shapes,)), FixedHeightText((self.state,))
-        vbox(heading(tr("3  Dataset")), self.name, asked, self.open, there, parent=self)
-        self.show_dataset("")
+        head = hbox(heading(tr("3  Dataset")), STRETCH, self.open)
+        vbox(head, self.name, FixedHeightText((self.shapes,)), parent=self)
 
     def folder_name(self) -> str:
         """Folder name, after that of the dataset."""
         return file_stem("_".join(self.name.text().split()) or "dataset")
-
-    def show_dataset(self, words: str) -> None:
-        self.state.setText(words or tr("No dataset yet."))
 
 
 @dataclass(frozen=True)

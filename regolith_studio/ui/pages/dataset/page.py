@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.dataset.build import singleton_class
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import ExportOptions, ExportResult
+from regolith_studio.dataset.export import RECORD, ExportOptions, ExportResult, load_command
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import CylinderFilling, cylinder_filling
 from regolith_studio.dataset.representatives import QualityPoint
@@ -41,7 +41,6 @@ from regolith_studio.ui.layout import (
     equal_parts,
     framed,
     hbox,
-    named,
     scrolled,
     scrolled_column,
     stacked,
@@ -65,6 +64,7 @@ from regolith_studio.ui.pages.dataset.views import (
     chosen_particles,
     coarsening_text,
     dataset_title,
+    provenance_text,
     shapes,
 )
 from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
@@ -98,15 +98,14 @@ class DatasetPage(PageWidget):
         self._opened: DatasetRequest | None = None
         self._to_reopen: Mapping[str, Any] | None = None
         self._to_build: tuple[Path, bool, Path | None] | None = None
+        self._task, self._target = 0, ""  # of the build or export that is running
         self._classes_to_build: list[ShapeClass] = []
 
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), ExportPanel()
-        self.result = ResultView("dataset_result", (tr("Representatives"), tr("Formats written")))
-        self.open_written = named(QPushButton(tr("Open the folder")), "dataset_open_written")
-        self.open_written.setEnabled(False)
-        self.result.add(self.open_written)
+        captions, export = (tr("Representatives"), tr("Formats written")), tr("Export …")
+        self.result = ResultView("dataset_result", captions, export, done=tr("Open the folder"))
         self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
@@ -115,6 +114,7 @@ class DatasetPage(PageWidget):
         self._context.bindings.refresh("particles", self._show_particles, keeps_particles=True)
         self._context.bindings.refresh("choices", self._show_choices, SETTINGS, slow=True)
         self._context.bindings.refresh("opened_request", self._take_opened)
+        self._context.bindings.refresh("tasks", self._follow, slow=True)
         self._show_losses()
         self._forget_dataset()
         self._enable_export()
@@ -140,6 +140,10 @@ class DatasetPage(PageWidget):
         if self._folder is not None:
             document = fingerprint(self._folder / "dataset.json")
             made |= {"folder": str(self._folder), "fingerprint": document, "current": self._is_current()}
+            made["exports"] = [
+                {"key": one.key, "folder": str(one.folder), "fingerprint": fingerprint(one.folder / RECORD)}
+                for one in self._exports
+            ]
         return self.settings() | {"made": made}
 
     def resume(self, state: Mapping[str, Any]) -> None:
@@ -167,10 +171,23 @@ class DatasetPage(PageWidget):
         def take(answer: tuple[Path, Dataset]) -> None:
             self._take_read(answer)
             self._made_with = self._settings() if made.get("current") else ("others",)
+            self._show_exports_again(made.get("exports") or (), answer[1])
             self._show_result()
 
         job = Job(open_dataset_folder, (folder,))
         self._context.start(tr("Reading the dataset"), job, take, queue=BUILD, repeats=True)
+
+    def _show_exports_again(self, kept: Sequence[Mapping[str, str]], dataset: Dataset) -> None:
+        """List the exports of a project that are still where they were, and note the others."""
+        for one in kept:
+            key, folder = one["key"], Path(one["folder"])
+            if key in EXPORTERS and fingerprint(folder / RECORD) == one["fingerprint"] != "":
+                command = load_command(EXPORTERS[key], folder, dataset)
+                self._exports.append(ExportResult(key, folder, (), command))
+            else:
+                note = tr("The export in {folder} has been moved or changed since.", folder=folder)
+                self._context.toast.note(note)
+        self.exports.show_exports(self._exports)
 
     def restore(self, state: Mapping[str, Any]) -> None:
         super().restore(state)
@@ -191,10 +208,12 @@ class DatasetPage(PageWidget):
         if not self._particles:
             self._context.toast.problem(tr("There are no particles to choose from: open some first."))
             return
+        if self._to_build is not None and to_build is None:
+            self._show_stopped()
         self._points, self._to_build = [], to_build
         known = self._survey.population if self._survey else None
         job = Job(survey_representatives, (self._particles, self.representatives.request(), known))
-        self._context.start(
+        task = self._context.start(
             tr("Finding representatives"),
             job,
             self._show_survey,
@@ -203,6 +222,8 @@ class DatasetPage(PageWidget):
             self._show_stopped if to_build else None,
             FIND,
         )
+        if to_build:
+            self._task = task
 
     def build_in(self, folder: Path, overwrite: bool = False, exports: Path | None = None) -> None:
         """Coarsen the representatives, which are found where there are none, and write the dataset.
@@ -213,7 +234,7 @@ class DatasetPage(PageWidget):
         if self.sizes.sizing() is None:
             return
         every = self.representatives.every
-        self.result.show_record(ResultRecord(state=ResultState.RUNNING, note=str(folder)))
+        self._begin(folder)
         if not every and (self._chosen is None or survey_now is None):
             self._find(to_build=(folder, overwrite, exports))
             return
@@ -228,7 +249,7 @@ class DatasetPage(PageWidget):
         population = None if every or survey_now is None else survey_now.population
         arguments = (self._particles, session.choices.coarsening_request, folder, options, population)
         self._context.remember("place", str(folder.parent))
-        self._context.start(
+        self._task = self._context.start(
             tr("Building the dataset"),
             Job(build_dataset_folder, arguments),
             lambda built: self._take_built(built, exports),
@@ -237,14 +258,50 @@ class DatasetPage(PageWidget):
             queue=BUILD,
         )
 
+    def _begin(self, target: Path) -> None:
+        """Show that something is being written, until it is or is not."""
+        self._target = str(target)
+        self.result.show_task(None)
+        self._show_record(self.result.record)
+
+    def _show_record(self, record: ResultRecord) -> None:
+        if self._target:
+            record = replace(record, state=ResultState.RUNNING, note=self._target)
+        self.result.show_record(record)
+
+    def _follow(self) -> None:
+        """Show how far a build or an export is."""
+        for task in self._context.session.tasks:
+            if task.id == self._task:
+                self.result.show_task(task)
+
+    def _stop(self) -> None:
+        self._context.session.cancel(self._task)
+        self._follow()
+
+    def _act(self) -> None:
+        """Do what the button of the card says."""
+        if self.result.record.state is ResultState.CURRENT:
+            folder = self._exports[0].folder.parent if self._exports else self._folder
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
+        else:
+            self.export()
+
     def _show_stopped(self) -> None:
-        """Show the dataset that was there before a build was stopped, if there was one."""
+        """Show what was there before a build or an export was stopped: nothing is written before its end."""
+        self._target = ""
         if self._dataset is None:
             self._forget_dataset()
         else:
             self._show_result()
+        before, note = self.result.record, tr("Stopped before anything was written.")
+        if before.state is ResultState.NONE:
+            self.result.show_record(ResultRecord(state=ResultState.STOPPED, note=note))
+        else:
+            self.result.show_record(replace(before, note=f"{note} {before.note}"))
 
     def _show_failure(self, failure: Failed) -> None:
+        self._target = ""
         self._show_result()
         self.result.show_record(replace(self.result.record, state=ResultState.FAILED, note=failure.sentence))
         self._context.toast.problem(failure.sentence, failure.details)
@@ -304,11 +361,13 @@ class DatasetPage(PageWidget):
             self.targets.consent(),
         )
         self._context.remember("place", str(folder))
-        self._context.start(
+        self._begin(folder)
+        self._task = self._context.start(
             tr("Exporting"),
             Job(export_dataset_folder, arguments),
             self._take_exports,
             failed=self._show_failure,
+            stopped=self._show_stopped,
             queue=EXPORT,
         )
 
@@ -321,11 +380,14 @@ class DatasetPage(PageWidget):
     def _show_particles(self) -> None:
         now = tuple(entry.particle for entry in self._context.session.particles)
         if now != self._particles:
+            if self._to_build is not None:
+                self._target = ""
             self._particles, self._survey, self._chosen, self._to_build = now, None, None, None
             self._context.stop(FIND)
             self.quality.show_curve(None)
             self._show_chosen()
         self.representatives.show_population(len(now))
+        self.gallery.show_hint(has_particles=bool(now))
         self._enable_export()
 
     def _show_point(self, point: QualityPoint) -> None:
@@ -367,9 +429,7 @@ class DatasetPage(PageWidget):
         self._dataset = self._folder = self._made_with = None
         self._exports = []
         self.exports.show_exports(())
-        self.folder.show_dataset("")
-        self.result.show_record(ResultRecord(note=tr("No dataset of these particles has been written yet.")))
-        self.open_written.setEnabled(False)
+        self._show_record(ResultRecord(note=tr("No dataset of these particles has been written yet.")))
         self._enable_export()
 
     def _show_chosen(self) -> None:
@@ -420,6 +480,7 @@ class DatasetPage(PageWidget):
         return [singleton_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
     def _take_built(self, built: DatasetBuildResult, exports: Path | None = None) -> None:
+        self._target = ""
         self._take_dataset(built.folder, built.dataset)
         self._made_with = self._settings()
         self._show_result()
@@ -436,9 +497,7 @@ class DatasetPage(PageWidget):
     def _take_dataset(self, folder: Path, dataset: Dataset) -> None:
         self._folder, self._dataset = folder, dataset
         self._context.session.dataset_folder = folder
-        title = dataset_title(dataset)
-        self.gallery.show_shapes(title, shapes(dataset))
-        self.folder.show_dataset(f"{title}\n{folder}")
+        self.gallery.show_shapes(dataset_title(dataset), shapes(dataset))
         self._exports, self._made_with = [], None
         self.exports.show_exports(())
         self._show_result()
@@ -476,12 +535,8 @@ class DatasetPage(PageWidget):
             written = tr("Built with other settings than those shown.") + " " + written
         values = (str(len(self._dataset)), str(len(self._exports)))
         state = ResultState.CURRENT if current else ResultState.STALE
-        self.result.show_record(ResultRecord(values, state=state, note=written))
-        self.open_written.setEnabled(True)
-
-    def _open_written(self) -> None:
-        folder = self._exports[0].folder.parent if self._exports else self._folder
-        QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
+        origin = provenance_text(self._dataset)
+        self._show_record(ResultRecord(values, origin, state=state, note=written))
 
     def _report_problems(self, problems: Sequence[str]) -> None:
         if problems:
@@ -492,6 +547,7 @@ class DatasetPage(PageWidget):
             self._context.toast.note(tr("The dataset is valid."))
 
     def _take_exports(self, done: Sequence[ExportResult]) -> None:
+        self._target = ""
         self._exports = list(done)
         self.exports.show_exports(done)
         self._lower.setCurrentIndex(1)
@@ -533,7 +589,8 @@ class DatasetPage(PageWidget):
         self.sizes.sizesChanged.connect(self._show_sizes)
         self.representatives.whichChanged.connect(self._show_chosen)
         self.folder.open.clicked.connect(self.open_dataset)
-        self.open_written.clicked.connect(self._open_written)
+        self.result.startRequested.connect(self._act)
+        self.result.stopRequested.connect(self._stop)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)
         for signal in (self.targets.chosenChanged, self.targets.optionsChanged, self.sizes.sizesChanged):

@@ -18,7 +18,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.layout import named, vbox
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import localized, number_text, tr, tr_count
+from regolith_studio.ui.translation import localized, number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.thumbnails import ThumbnailQueue
@@ -54,11 +54,12 @@ class RepresentativesGallery(QWidget):
         self.list.setMovement(QListView.Movement.Static)
         self.list.setIconSize(QSize(SIZE, SIZE))
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
-        self.empty = QLabel(tr("Press Find representatives to show them here with their weights."))
+        self.empty = QLabel()
         self.empty.setProperty("role", "hint")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setWordWrap(True)
         vbox(self.title, (self.list, 1), (self.empty, 1), parent=self, margins=(8, 6, 8, 6))
+        self.show_hint(has_particles=False)
         self.show_shapes("", ())
 
     @property
@@ -80,6 +81,14 @@ class RepresentativesGallery(QWidget):
         self.empty.setVisible(not shown)
         self._fit_cells()
         self._redraw()
+
+    def show_hint(self, *, has_particles: bool) -> None:
+        """Say what to do to see particles here."""
+        self.empty.setText(
+            tr("Press Find representatives to show them here with their weights.")
+            if has_particles
+            else tr("No particles are open: open files, the sample, or draw some on the page Shape model.")
+        )
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -303,20 +312,39 @@ SHAPE_FIELDS = ("method", "stop_at", "n_facets", "n_triangles", "n_vertices", "l
 def coarsening_text(choices: Choices) -> str:
     """Description of how the shapes will be coarsened."""
     known = METHODS.get(choices.method)
+    fineness = tr("at most {faces} facets", faces=choices.facet_count)
+    if choices.stop_at == "error":
+        limit = number_text(100 * choices.largest_error, "g")
+        fineness = tr("the fewest facets with all errors below {limit} %", limit=limit)
     return tr(
         "Each with {fineness}; method: {method} (see Explore).",
-        fineness=facet_limit_text(choices),
+        fineness=fineness,
         method=tr(known.label) if known else choices.method,
     )
 
 
-def facet_limit_text(choices: Choices) -> str:
-    """What each polyhedron will have, to be put behind a heading."""
-    if choices.stop_at == "error":
-        limit = number_text(100 * choices.largest_error, "g")
-        return tr("the fewest facets with all errors below {limit} %", limit=limit)
-    faces = choices.facet_count
-    return tr("at most {faces} facets, {triangles} triangles", faces=faces, triangles=4 * faces - 12)
+def provenance_text(dataset: Dataset) -> str:
+    """What a dataset was made from and with, as far as it says so."""
+    origin, words = dataset.provenance, []
+    if origin.representation is not None:
+        count = origin.representation.n_particles
+        words.append(tr_count(N_("1 particle"), N_("{count} particles"), count))
+    if (made := origin.coarsening) is not None:
+        known = METHODS.get(made.method)
+        target = tr("target: particle")
+        if made.target == "fit":
+            target = tr("target: fit of degree {l_max}", l_max=origin.l_max or 0)
+        facets = tr("n = {facets}", facets=made.n_facets)
+        if made.max_error is not None:
+            limit = number_text(100 * made.max_error, "g")
+            facets = tr("the fewest facets with all errors below {limit} %", limit=limit)
+        words += [
+            translate(known.label) if known else made.method,
+            facets,
+            target,
+            tr("seed {seed}", seed=made.seed),
+        ]
+    return ", ".join(words)
 
 
 def _by_share(shown: list[tuple[float, GalleryItem]]) -> list[GalleryItem]:
