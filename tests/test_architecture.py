@@ -4,6 +4,7 @@ import ast
 import copy
 import graphlib
 import importlib.util
+import re
 import statistics
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -142,6 +143,21 @@ def test_that_every_module_is_part_of_a_package() -> None:
 def test_that_no_module_is_a_drawer_for_odds_and_ends() -> None:
     drawers = {"utils", "util", "helpers", "helper", "common", "misc"}
     assert not [path for path in MODULES if {path.stem.strip("_"), path.parent.name.strip("_")} & drawers]
+
+
+def test_that_every_record_of_locked_arrays_keeps_its_locks_in_another_process() -> None:
+    """Pickle forgets that an array is read-only: such a record is pickled by its constructor."""
+    classes = [
+        (path.name, each)
+        for path in MODULES
+        for each in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(each, ast.ClassDef) and re.search(r"\blocked_(floats|integers)\(", ast.unparse(each))
+    ]
+    assert len(classes) > 20
+    for name, each in classes:
+        own = any(isinstance(part, ast.FunctionDef) and part.name == "__reduce__" for part in each.body)
+        inherited = {"LockedRecord", "SurfaceSampler"} & {ast.unparse(base) for base in each.bases}
+        assert own or inherited, (name, each.name)
 
 
 def line_count(path: Path) -> int:

@@ -16,7 +16,7 @@ from regolith_studio.dataset.size_distributions import (
     normalised_shares,
 )
 from regolith_studio.errors import DatasetError, GeometryError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, LockedRecord, locked_floats
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -25,7 +25,7 @@ from regolith_studio.geometry.particle import Source
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(LockedRecord):
     """Pose of a unit-volume shape in its particle: x_shape = rotation @ (x_particle - centroid) / scale.
 
     - ``rotation``: proper rotation, shape (3, 3); its rows are the shape's axes in the particle's frame.

@@ -1,6 +1,5 @@
 """A simulated test: particles drawn from a dataset, coarse-grained to the mass of the test; its scaling."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -20,7 +19,7 @@ from regolith_studio.dataset.sampling import sample_dataset
 from regolith_studio.dem.angle_of_repose import COARSE_PILE, RELIABLE_N
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats, locked_integers
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.messages import N_, Message, Number
 
@@ -112,7 +111,7 @@ class ReposeCase:
 
 
 @dataclass(frozen=True, eq=False)
-class PreparedCase:
+class PreparedCase(LockedRecord):
     """A case with its particles. SI units.
 
     - ``case``: parameters of the test.
@@ -150,9 +149,6 @@ class PreparedCase:
         object.__setattr__(self, "class_index", locked_integers(self.class_index, (n,), "class_index"))
         shapes = tuple(locked_floats(each, (None, 3), "shapes") for each in self.shapes)
         object.__setattr__(self, "shapes", shapes)
-
-    def __reduce__(self) -> tuple[Callable[..., "PreparedCase"], tuple[Any, ...]]:
-        return PreparedCase, tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
     def __len__(self) -> int:
         return len(self.diameters)

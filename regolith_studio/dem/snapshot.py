@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats, locked_integers
 from regolith_studio.io.own_files import read_archive, read_arrays
 from regolith_studio.messages import N_, Message, Number
 
@@ -28,7 +28,7 @@ def progress_message(phase: str, seconds: float) -> Message:
 
 
 @dataclass(frozen=True, eq=False)
-class ParticleState:
+class ParticleState(LockedRecord):
     """Particles at one moment, in SI units, z up, the plate at z = 0.
 
     - ``points``: centres of mass in metres, shape (n, 3).
@@ -53,10 +53,6 @@ class ParticleState:
         for name, shape in (("points", (None, 3)), ("diameters", (n,)), ("orientations", (n, 4))):
             object.__setattr__(self, name, locked_floats(getattr(self, name), shape, name))
         object.__setattr__(self, "class_index", locked_integers(self.class_index, (n,), "class_index"))
-
-    def __reduce__(self) -> tuple[Callable[..., "ParticleState"], tuple[Any, ...]]:
-        fields = (self.points, self.diameters, self.orientations, self.class_index)
-        return ParticleState, (*fields, self.time, self.wall, self.phase)
 
     def __len__(self) -> int:
         return len(self.points)

@@ -11,13 +11,13 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, LockedRecord, locked_floats
 
 WEIGHTINGS = ("number", "volume")
 
 
 @dataclass(frozen=True, eq=False)
-class Distribution:
+class Distribution(LockedRecord):
     """Values with weights.
 
     ``values``: rising, shape (n,). ``weights``: share of the sample that each value stands for, sum 1, shape

@@ -1,6 +1,7 @@
 """Array types, and the copy-and-lock that keeps value objects from changing."""
 
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -8,6 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class LockedRecord:
+    """A record of locked arrays; pickled by its constructor, as pickle forgets that an array is read-only."""
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Any, ...]]:
+        return type(self), tuple(getattr(self, each.name) for each in fields(self) if each.init)
 
 
 def locked_floats(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> FloatArray:

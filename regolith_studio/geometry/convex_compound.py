@@ -1,16 +1,15 @@
 """Unions of convex polyhedra: particles that are not convex, as DEM codes take them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.topology import Connectivity, merged_vertices
@@ -21,7 +20,7 @@ DEGENERATE_EDGE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class ConvexCompound:
+class ConvexCompound(LockedRecord):
     """The union of convex polyhedra that overlap or touch; volume, area and moments are those of the union.
 
     Facets are numbered through: those of the first part first.
@@ -39,9 +38,6 @@ class ConvexCompound:
             raise ValueError("a compound needs at least one part")
         places = locked_floats(self.places, (len(self.parts), 3), "places")
         object.__setattr__(self, "places", places)
-
-    def __reduce__(self) -> tuple[Callable[..., "ConvexCompound"], tuple[Any, ...]]:
-        return ConvexCompound, (self.parts, self.places)
 
     @property
     def n_parts(self) -> int:

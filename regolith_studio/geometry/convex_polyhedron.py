@@ -1,16 +1,14 @@
 """Convex polyhedra bounded by half-spaces: the particles that DEM codes take (Eq. 5)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
@@ -19,7 +17,7 @@ MERGE_TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class ConvexPolyhedron:
+class ConvexPolyhedron(LockedRecord):
     """A bounded intersection of half-spaces, with its vertices and polygonal facets.
 
     Parameters
@@ -42,9 +40,6 @@ class ConvexPolyhedron:
             raise ValueError(
                 f"{len(self.half_spaces)} half-spaces need as many facets, got {len(self.facets)}"
             )
-
-    def __reduce__(self) -> tuple[Callable[..., "ConvexPolyhedron"], tuple[Any, ...]]:
-        return ConvexPolyhedron, (self.half_spaces, self.vertices, self.facets)
 
     @classmethod
     def from_half_spaces(cls, half_spaces: HalfSpaces) -> "ConvexPolyhedron":

@@ -1,9 +1,7 @@
 """Oriented bounding boxes of minimum volume, exact in the sense of O'Rourke; and trimesh's heuristic box."""
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh, bounds_of
 from regolith_studio.geometry.minimum_box import TooManyCurvesError, minimum_box
@@ -31,7 +29,7 @@ FIRST_CELL = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class OrientedBox:
+class OrientedBox(LockedRecord):
     """A box in any orientation.
 
     - ``centre``: shape (3,).
@@ -53,9 +51,6 @@ class OrientedBox:
             raise ValueError("axes must be orthonormal")
         if not self.extents[0] >= self.extents[1] >= self.extents[2] >= 0.0:
             raise ValueError(f"extents must fall and not be negative, got {self.extents}")
-
-    def __reduce__(self) -> tuple[Callable[..., "OrientedBox"], tuple[Any, ...]]:
-        return OrientedBox, (self.centre, self.axes, self.extents)
 
     @property
     def volume(self) -> float:

@@ -11,17 +11,16 @@ with P_lm >= 0 near t = 0 and the integral of Y_lm^2 over the sphere equal to on
 radius is c_00 / sqrt(4 pi). The flat index is k = l^2 + l + m.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import isqrt
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 
 CONVENTION = (
     "Real spherical harmonics, orthonormal on the unit sphere, without the Condon-Shortley phase; "
@@ -32,7 +31,7 @@ CONVENTION = (
 
 
 @dataclass(frozen=True, eq=False)
-class ShCoefficients:
+class ShCoefficients(LockedRecord):
     """Coefficients c_lm up to degree l_max.
 
     Parameters
@@ -62,9 +61,6 @@ class ShCoefficients:
                 f"l = {degree}, m = {order}."
             )
         object.__setattr__(self, "values", locked_floats(values, (None,), "values"))
-
-    def __reduce__(self) -> tuple[Callable[..., "ShCoefficients"], tuple[ArrayLike]]:
-        return ShCoefficients, (self.values,)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -159,7 +155,7 @@ N_RESAMPLES = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class PowerSpectrum:
+class PowerSpectrum(LockedRecord):
     """Variance per order at each degree: A_l, the mean of c_lm^2 over m.
 
     Not the "power" of pyshtools, which is (2 l + 1) / (4 pi) times as much in this convention.
@@ -181,9 +177,6 @@ class PowerSpectrum:
             band = getattr(self, name)
             if band is not None:
                 object.__setattr__(self, name, locked_floats(band, self.values.shape, name))
-
-    def __reduce__(self) -> tuple[Callable[..., "PowerSpectrum"], tuple[ArrayLike | None, ...]]:
-        return PowerSpectrum, (self.values, self.mean_radius, self.low, self.high)
 
     @property
     def l_max(self) -> int:

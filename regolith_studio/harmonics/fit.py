@@ -1,14 +1,12 @@
 """From a mesh to the spherical-harmonics coefficients of its radius function (sections 2.3 and 3.1)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError, InputError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, LockedRecord, locked_floats
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
@@ -46,7 +44,7 @@ UNUSABLE = N_("RMS radius error up to l = {degree}: {error}, so that the fit can
 
 
 @dataclass(frozen=True, eq=False)
-class HarmonicFit:
+class HarmonicFit(LockedRecord):
     """Expansion of a particle in spherical harmonics, and its errors.
 
     Parameters
@@ -90,9 +88,6 @@ class HarmonicFit:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "star_point", locked_floats(self.star_point, (3,), "star_point"))
-
-    def __reduce__(self) -> tuple[Callable[..., "HarmonicFit"], tuple[Any, ...]]:
-        return HarmonicFit, tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
     @property
     def l_max(self) -> int:

@@ -1,6 +1,6 @@
 """A volume of voxels, as a scanner or a segmentation leaves it; boxes within it; the scans that ship."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, LockedRecord, locked_floats
 from regolith_studio.resources import resource
 
 SampleVolume = Literal["labels", "grey"]
@@ -62,7 +62,7 @@ Origin = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Volume:
+class Volume(LockedRecord):
     """Voxels on a rectangular grid.
 
     The array is not copied, since volumes can fill the memory: the volume holds a read-only view,
@@ -99,10 +99,6 @@ class Volume:
             raise InputError(f"The voxels of {self.name} are {view.dtype}, not numbers.")
         object.__setattr__(self, "array", view)
         object.__setattr__(self, "voxel_size", sizes)
-
-    def __reduce__(self) -> tuple[Callable[..., "Volume"], tuple[Any, ...]]:
-        # By the constructor, since pickle forgets that an array is read-only.
-        return Volume, (self.array, self.voxel_size, self.kind, self.name, self.origin)
 
     @property
     def shape(self) -> tuple[int, int, int]:

@@ -1,15 +1,11 @@
 """Particle positions from tables, XYZ and LAMMPS dumps, for the angle of repose."""
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-from numpy.typing import ArrayLike
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, LockedRecord, locked_floats
 from regolith_studio.readers.position_formats import NAME_THEM
 from regolith_studio.readers.sandbox.parent import shared_sandbox
 from regolith_studio.readers.settings import UNITS, unit_factor
@@ -21,7 +17,7 @@ _METRES = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class ParticlePositions:
+class ParticlePositions(LockedRecord):
     """Centres of particles, and how large they are.
 
     - ``points``: shape (n, 3), metres.
@@ -44,11 +40,6 @@ class ParticlePositions:
         object.__setattr__(self, "points", points)
         if self.diameters is not None:
             object.__setattr__(self, "diameters", locked_floats(self.diameters, (len(points),), "diameters"))
-
-    def __reduce__(
-        self,
-    ) -> tuple[Callable[..., "ParticlePositions"], tuple[ArrayLike | str | Any | None, ...]]:
-        return ParticlePositions, (self.points, self.diameters, self.name, self.notes, self.states_unit)
 
     def __len__(self) -> int:
         return len(self.points)

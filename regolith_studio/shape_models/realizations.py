@@ -1,15 +1,21 @@
 """Virtual particles: coefficients drawn from a model, their closed surfaces, and tests of positive radii."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import isqrt
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import (
+    BoolArray,
+    FloatArray,
+    IntArray,
+    LockedRecord,
+    locked_floats,
+    locked_integers,
+)
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
@@ -36,7 +42,7 @@ _PATCH = np.stack(np.meshgrid(*[np.linspace(-1, 1, 9)] * 3), axis=-1).reshape(-1
 
 
 @dataclass(frozen=True, eq=False)
-class Realizations:
+class Realizations(LockedRecord):
     """Particles drawn from a fitted model.
 
     - ``coefficients``: shape (n, (l_max + 1)^2); of the radius or of its natural logarithm, as `scale` says.
@@ -66,9 +72,6 @@ class Realizations:
             given = getattr(self, name)
             values = np.full(len(rows), filler) if given is None else given
             object.__setattr__(self, name, locked_integers(values, (len(rows),), name))
-
-    def __reduce__(self) -> tuple[Callable[..., "Realizations"], tuple[Any, ...]]:
-        return Realizations, tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
     def __len__(self) -> int:
         return len(self.coefficients)

@@ -3,17 +3,16 @@
 The shape is the logarithm of the radius divided by the equivalent radius.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.harmonics.coefficients import ShCoefficients, degrees
 from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
 from regolith_studio.messages import N_, Message
@@ -25,7 +24,7 @@ IDENTICAL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Sample:
+class Sample(LockedRecord):
     """Radius functions of the particles of one sample, all expanded to the same degree.
 
     Parameters
@@ -81,9 +80,6 @@ class Sample:
         if not particles:
             raise InputError(_too_few(0))
         return cls(np.stack([each.values for each in particles]), tuple(names), unit)
-
-    def __reduce__(self) -> tuple[Callable[..., "Sample"], tuple[Any, ...]]:
-        return Sample, (self.coefficients, self.names, self.unit)
 
     def __len__(self) -> int:
         return len(self.coefficients)

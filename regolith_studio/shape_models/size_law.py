@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import log_ndtr, logsumexp, ndtr, ndtri
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 
 Bounds = tuple[float, float] | None
 MAX_MODES = 6
@@ -39,7 +39,7 @@ def checked_bounds(bounds: Bounds) -> Bounds:
 
 
 @dataclass(frozen=True, eq=False)
-class LogNormalSizes:
+class LogNormalSizes(LockedRecord):
     """Mixture of normal distributions of ln r.
 
     ``weights``, ``means``, ``deviations``: of the components, shape (k,); means and standard deviations of
@@ -60,9 +60,6 @@ class LogNormalSizes:
         checked_bounds(self.limits)
         if not (self.deviations > 0).all() or not (self.weights >= 0).all() or not self.weights.sum() > 0:
             raise ValueError("deviations must be positive, weights not negative and not all zero")
-
-    def __reduce__(self) -> tuple[Callable[..., "LogNormalSizes"], tuple[Any, ...]]:
-        return LogNormalSizes, (self.weights, self.means, self.deviations, self.limits)
 
     @classmethod
     def log_normal(cls, radii: FloatArray) -> "LogNormalSizes":

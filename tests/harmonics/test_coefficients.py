@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.coefficients import (
-    PowerSpectrum,
     ShCoefficients,
     degrees,
     from_pyshtools,
@@ -172,10 +171,3 @@ def test_that_one_particle_is_no_sample(rough):
 
 def test_that_a_sample_is_cut_to_its_lowest_degree(rough):
     assert sample_spectrum([rough(3), rough(5), rough(4)]).l_max == 3
-
-
-def test_that_a_spectrum_survives_pickling(gaussian_sample):
-    spectrum = sample_spectrum(gaussian_sample[:5])
-    copy = pickle.loads(pickle.dumps(spectrum))
-    np.testing.assert_array_equal(copy.high, spectrum.high)
-    assert isinstance(copy, PowerSpectrum)

@@ -1,6 +1,5 @@
 """Fits of shapes with closed forms, their warnings, and what is refused."""
 
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -129,14 +128,6 @@ def test_that_star_points_are_chosen_by_name(bracket):
     fit = fit_harmonics(bracket, 4, star_point="kernel_centre", sampling_degree=10)
     np.testing.assert_allclose(fit.star_point, 0.5, atol=1e-9)
     assert fit.star_shaped
-
-
-def test_that_a_fit_survives_pickling(ellipsoid):
-    fit = fit_harmonics(ellipsoid(2.0, 1.0, 0.5, level=1), 4, sampling_degree=8, reference="ellipsoid")
-    copy = pickle.loads(pickle.dumps(fit))
-    np.testing.assert_array_equal(copy.coefficients.values, fit.coefficients.values)
-    np.testing.assert_array_equal(copy.reference.semi_axes, fit.reference.semi_axes)
-    assert copy.warnings == fit.warnings
 
 
 @pytest.mark.real_data

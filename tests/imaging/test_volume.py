@@ -1,7 +1,5 @@
 """Volumes check themselves and do not change."""
 
-import pickle
-
 import numpy as np
 import pytest
 
@@ -17,12 +15,6 @@ def test_that_a_volume_is_locked_without_locking_the_array_of_its_maker() -> Non
     with pytest.raises(ValueError, match="read-only"):
         volume.array[0, 0, 0] = 1
     array[0, 0, 0] = 1
-
-
-def test_that_a_volume_survives_pickling() -> None:
-    volume = pickle.loads(pickle.dumps(Volume(LABELS, (1.0, 2.0, 3.0), "labels", "test")))
-    assert volume.name == "test"
-    assert not volume.array.flags.writeable
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,3 @@
-import pickle
 from collections.abc import Callable
 
 import numpy as np
@@ -83,13 +82,6 @@ def test_that_particles_with_a_negative_radius_are_left_out_for_logarithms() -> 
     assert sample.star_shaped().names == ("particle-1", "particle-3")
     with pytest.raises(InputError, match="Only 1 of 2 particles"):
         Sample(np.stack([sphere(1.0), bad])).star_shaped()
-
-
-def test_that_a_sample_survives_pickling_and_stays_locked(rough_sample: Callable[..., Sample]) -> None:
-    sample = pickle.loads(pickle.dumps(rough_sample(4)))
-    assert sample.names == rough_sample(4).names
-    with pytest.raises(ValueError, match="read-only"):
-        sample.coefficients[0, 0] = 1.0
 
 
 def test_that_a_degree_beyond_the_sample_is_refused(rough_sample: Callable[..., Sample]) -> None:

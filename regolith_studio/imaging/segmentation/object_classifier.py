@@ -18,7 +18,14 @@ from scipy.spatial import ConvexHull
 from skimage.measure import marching_cubes
 
 from regolith_studio.errors import InputError, MissingRequirement
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import (
+    BoolArray,
+    FloatArray,
+    IntArray,
+    LockedRecord,
+    locked_floats,
+    locked_integers,
+)
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.label_table import GrainCrop, LabelTable, grain_crop, label_table
 from regolith_studio.imaging.segmentation.splitting import in_mean_edges, split
@@ -62,7 +69,7 @@ class ObjectTable:
 
 
 @dataclass(frozen=True, eq=False)
-class ObjectTraining:
+class ObjectTraining(LockedRecord):
     """Examples with their descriptors: all that an object classifier is trained from.
 
     - ``positions``: a voxel in each example, along x, y, z, shape (n, 3).

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError, MissingRequirement
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats, locked_integers
 from regolith_studio.imaging.segmentation.pixel_features import (
     FeatureSettings,
     block_features,
@@ -91,7 +91,7 @@ class ClassifierSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class TrainingSet:
+class TrainingSet(LockedRecord):
     """Painted voxels with their features: all that a classifier is trained from.
 
     - ``positions``: voxels along x, y, z, shape (n, 3).

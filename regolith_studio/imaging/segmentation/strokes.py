@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_integers
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_integers
 
 ERASER = -1
 """The label of a stroke that takes paint away."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stroke:
+class Stroke(LockedRecord):
     """Voxels that were painted at a time.
 
     ``positions``: along x, y, z, shape (n, 3). ``label``: their class, from 0, or :data:`ERASER`.

@@ -12,7 +12,7 @@ from scipy import ndimage
 from skimage import filters
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats, locked_integers
 from regolith_studio.imaging.settings import CleaningSettings, ThresholdSettings
 from regolith_studio.messages import N_, Message, Number
 
@@ -26,7 +26,7 @@ _multi_otsu: Any = filters.threshold_multiotsu
 
 
 @dataclass(frozen=True, eq=False)
-class Histogram:
+class Histogram(LockedRecord):
     """How often grey values occur.
 
     ``counts``: shape (n,). ``edges``: of the bins, ascending, shape (n + 1,).

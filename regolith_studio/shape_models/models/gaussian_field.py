@@ -4,7 +4,7 @@ c_00 is N(mu, A_0), c_lm is N(0, A_l), all independent. Nothing keeps the radius
 radius is not are thrown away and counted, which the paper does not mention.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, LockedRecord, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
@@ -33,7 +33,7 @@ class GaussianFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianField(RejectionSampler):
+class GaussianField(RejectionSampler, LockedRecord):
     """The field's numbers.
 
     The draws that are kept are larger and rounder than the field (:meth:`rejection_bias`).
@@ -57,9 +57,6 @@ class GaussianField(RejectionSampler):
         if values.ndim != 1 or not len(values) or not (np.isfinite(values).all() and (values >= 0).all()):
             raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
         object.__setattr__(self, "spectrum", locked_floats(values, (None,), "spectrum"))
-
-    def __reduce__(self) -> tuple[Callable[..., "GaussianField"], tuple[Any, ...]]:
-        return GaussianField, (self.mean, self.spectrum, self.unit)
 
     @property
     def l_max(self) -> int:

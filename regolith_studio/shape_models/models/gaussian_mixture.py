@@ -10,7 +10,7 @@ degree enter: directions within a degree are even in an isotropic field. ::
     ln p(i | k) = ln N(x_i; mu_k, s_k^2) - 1/2 sum over l of ((2 l + 1) ln A_lk + P_il / A_lk) + constant
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
@@ -20,7 +20,7 @@ from scipy.cluster.vq import kmeans2
 from scipy.special import logsumexp
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_, Message
 from regolith_studio.settings import setting
@@ -204,7 +204,7 @@ KEY = "gaussian_mixture"
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianMixture(RejectionSampler):
+class GaussianMixture(RejectionSampler, LockedRecord):
     """A fitted mixture, the component with the largest share first.
 
     - ``weights``: shares by number, before draws are thrown away, shape (k,).
@@ -239,10 +239,6 @@ class GaussianMixture(RejectionSampler):
         object.__setattr__(self, "names", component_names(self.names, k))
         if not ((self.weights >= 0).all() and self.weights.sum() > 0):
             raise InputError("Shares of a mixture must not be negative.")
-
-    def __reduce__(self) -> tuple[Callable[..., "GaussianMixture"], tuple[Any, ...]]:
-        fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
-        return GaussianMixture, fields
 
     @property
     def l_max(self) -> int:

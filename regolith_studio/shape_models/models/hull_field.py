@@ -30,7 +30,7 @@ Size, form, roughness and hull ratio of a particle tell most of the power of its
 linear in the features, and what is left is a normal law over the degrees, correlated.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -41,7 +41,7 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ndtr, ndtri
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.messages import N_, Message
 from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
@@ -70,7 +70,7 @@ RIDGE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class FineDegrees:
+class FineDegrees(LockedRecord):
     """ln P_l of the degrees above the hull field's: offset + slopes features + factor normal numbers.
 
     - ``offset``: shape (m,), one for each degree.
@@ -91,9 +91,6 @@ class FineDegrees:
             if not np.isfinite(values).all():
                 raise InputError(f"The {name} of the fine degrees must be finite.")
             object.__setattr__(self, name, values)
-
-    def __reduce__(self) -> tuple[Callable[..., "FineDegrees"], tuple[Any, ...]]:
-        return FineDegrees, (self.offset, self.slopes, self.factor)
 
     def __len__(self) -> int:
         return len(self.offset)
@@ -148,7 +145,7 @@ REACH = 3.2
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianCopula:
+class GaussianCopula(LockedRecord):
     """The joint distribution of d numbers.
 
     ``quantiles``: of each number at even normal scores from -3.2 to 3.2, ascending, shape (q, d).
@@ -170,9 +167,6 @@ class GaussianCopula:
             raise InputError("Correlations must be a positive definite matrix.")
         object.__setattr__(self, "quantiles", quantiles)
         object.__setattr__(self, "correlations", correlations)
-
-    def __reduce__(self) -> tuple[Callable[..., "GaussianCopula"], tuple[Any, ...]]:
-        return GaussianCopula, (self.quantiles, self.correlations)
 
     @classmethod
     def of(cls, table: FloatArray) -> "GaussianCopula":
@@ -331,7 +325,7 @@ class HullFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class HullField(SizedSampler):
+class HullField(SizedSampler, LockedRecord):
     """A fitted hull field.
 
     - ``numbers``: joint distribution of the columns of :mod:`~regolith_studio.shape_models.shape_features`,
@@ -366,9 +360,6 @@ class HullField(SizedSampler):
             given = getattr(self, name)
             values = filler(length) if given is None else given
             object.__setattr__(self, name, locked_floats(values, (length,), name))
-
-    def __reduce__(self) -> tuple[Callable[..., "HullField"], tuple[Any, ...]]:
-        return HullField, tuple(getattr(self, name) for name in self.__dataclass_fields__ if name != "key")
 
     @property
     def l_max(self) -> int:

@@ -5,7 +5,7 @@ nothing is thrown away, and size and shape extrapolate apart. The exponential co
 brings the elongated particles that an isotropic field in r cannot make.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, LockedRecord, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.settings import setting
@@ -48,7 +48,7 @@ class LogFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class LogField(SizedSampler):
+class LogField(SizedSampler, LockedRecord):
     """The field's numbers.
 
     - ``spectrum``: a_l of ln r, shape (l_max + 1,), A_0 = 0; at `reference_radius`.
@@ -81,9 +81,6 @@ class LogField(SizedSampler):
         if self.powers is not None and self.radii is not None:
             object.__setattr__(self, "powers", locked_floats(self.powers, (None, len(values)), "powers"))
             object.__setattr__(self, "radii", locked_floats(self.radii, (len(self.powers),), "radii"))
-
-    def __reduce__(self) -> tuple[Callable[..., "LogField"], tuple[Any, ...]]:
-        return LogField, tuple(getattr(self, name) for name in self.__dataclass_fields__ if name != "key")
 
     @property
     def l_max(self) -> int:
