@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from scipy.spatial import ConvexHull, HalfspaceIntersection
+from scipy.spatial import HalfspaceIntersection
 from scipy.stats import qmc
 
 from regolith_studio.dataset.build import build_dataset
@@ -18,9 +18,7 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.multisphere import (
     COUNTS,
     fit_spheres,
-    fit_spheres_by,
     fit_spheres_within,
-    inner_points,
     inscribed_spheres,
     sphere_fit_errors,
     union_moments,
@@ -239,27 +237,6 @@ def test_that_a_sphere_within_another_adds_nothing_and_one_apart_adds_itself() -
     assert (apart.values[0], apart.area) == pytest.approx((1.125 * ball, 5 * np.pi), rel=1e-4)
 
 
-def test_that_the_gradient_of_the_moments_is_their_difference_quotient() -> None:
-    spheres = np.array([[0.0, 0.1, 0.0, 1.0], [0.9, 0.0, 0.2, 0.7], [-0.3, 0.8, -0.4, 0.5]])
-    gradient, step = union_moments(spheres).gradient, 0.05
-    for k in range(3):
-        for axis in range(4):
-            up, down = spheres.copy(), spheres.copy()
-            up[k, axis] += step
-            down[k, axis] -= step
-            slope = (union_moments(up).values - union_moments(down).values) / (2 * step)
-            assert gradient[:, k, axis] == pytest.approx(slope, abs=0.03)
-
-
-def test_that_formats_share_the_spheres_of_a_shape_and_cannot_change_them() -> None:
-    shape = cube()
-    spheres = fit_spheres_by(shape, 2, 0.0)
-    assert fit_spheres_by(shape, 2, 0.0) is spheres
-    assert len(fit_spheres_by(shape, 1, 0.0)) == 1
-    with pytest.raises(ValueError, match="read-only"):
-        spheres[0] = 0.0
-
-
 def test_that_one_sphere_for_a_cube_has_its_volume_and_centre_and_more_match_better() -> None:
     ball = fit_spheres(cube(), 1)
     assert ball[0] == pytest.approx([0, 0, 0, (3 / (4 * np.pi)) ** (1 / 3)], abs=5e-3)
@@ -312,13 +289,6 @@ def test_that_no_more_spheres_are_taken_than_a_stated_error_needs(dataset: Datas
     assert sphere_fit_errors(shape, spheres).jaccard <= 0.2
     before = max(count for count in COUNTS if count < len(spheres))
     assert sphere_fit_errors(shape, fit_spheres(shape, before)).jaccard > 0.2
-
-
-def test_that_inner_points_are_inside_and_even() -> None:
-    points = inner_points(cube(), 4096)
-    assert np.abs(points).max() <= 0.5
-    assert points.mean(axis=0) == pytest.approx(np.zeros(3), abs=1e-3)
-    assert points.var(axis=0) == pytest.approx(np.full(3, 1 / 12), rel=1e-2)
 
 
 def test_that_the_stated_volume_of_the_spheres_agrees_with_monte_carlo(
@@ -396,8 +366,3 @@ def test_that_size_classes_keep_the_mean_mass_of_a_particle(kind: str) -> None:
     assert classes.number @ classes.diameters**3 == pytest.approx(sizes.mean_cube(), rel=5e-3)
     spread = np.abs(np.cumsum(classes.number) - sizes.weighted("number").cdf(classes.diameters))
     assert spread.max() <= classes.number.max() + 1e-9
-
-
-def test_that_a_hull_of_scipy_agrees_with_the_shapes_of_the_dataset(dataset: Dataset) -> None:
-    for one in dataset.representatives:
-        assert ConvexHull(one.shape.vertices).volume == pytest.approx(1.0, rel=1e-12)

@@ -30,7 +30,6 @@ def ascii_text(triangles=SOUP, number="{:g}"):
 
 
 TEXT = ascii_text()
-FLAT = SOUP * (1, 1, 0)
 EMPTY, SHORT, CUT = "is empty", "too short for an STL", "cut short or not an STL: it declares"
 NONE, BROKEN, NUMBER = "without a single triangle", "broken ASCII STL", "where a number belongs"
 SHEET, FLATNESS = (

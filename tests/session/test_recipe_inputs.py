@@ -1,7 +1,6 @@
 """Recipes that begin with volumes, fitted models, tables of coefficients or a sample to draw like."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,6 @@ from regolith_studio.jobs.extraction_jobs import extract_file
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.resources import resource
-from regolith_studio.session.batch.preprocessing import read_grain, read_index
 from regolith_studio.session.recipe import recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.shape_models.materials import materials
@@ -146,20 +144,6 @@ def test_that_a_run_given_up_while_grains_are_extracted_or_worked_on_ends_with_t
         assert contents(folder) == contents(tmp_path / "whole")
     again = run(tmp_path / "whole", **entries)
     assert again.tally.n_read > 0
-
-
-def test_that_a_grain_is_kept_bit_for_bit(tmp_path: Path, scan: dict[str, Any]) -> None:
-    steps = run_recipe(recipe_of(**BASE, volumes=[scan]), tmp_path, tmp_path / "out")
-    for step in steps:
-        if isinstance(step, Started) and step.title == "Working on particles":
-            break
-    (index,) = (tmp_path / "out" / "journal" / "prepared").glob("volume-*")
-    kept = [read_grain(index, entry) for entry in read_index(index)]
-    steps.close()
-    for wanted, each in zip(extracted(scan), kept, strict=True):
-        assert np.array_equal(wanted.mesh.vertices, each.mesh.vertices)
-        assert np.array_equal(wanted.mesh.faces, each.mesh.faces)
-        assert replace(wanted, mesh=each.mesh) == each
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,6 @@ from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.inputs import load_recipe_particles
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.outputs.summary import html_table
 from regolith_studio.session.recipe import VolumeEntry, recipe_of
 from regolith_studio.session.report import heap_sections, write
 from regolith_studio.session.report.sections import (
@@ -118,13 +117,6 @@ def test_that_the_page_needs_no_other_file(small: WrittenReport) -> None:
     assert "url(" not in text
     assert "3 particles &amp; more" in text
     assert "&lt;two&gt;" in text
-
-
-def test_that_text_stands_at_the_left_of_its_column_and_numbers_at_the_right() -> None:
-    rows = [["a", "x-1.stl", "4.07 (3.03 to 4.97)", "not given"], ["b", "x-2.stl", "0", "3"]]
-    table = html_table(["name", "file", "error", "paper"], [*rows, ["c", "", "-1e-05", "12, 13"]])
-    assert re.findall(r'<th class="text">(\w+)</th>', table) == ["name", "file"]
-    assert table.count('<td class="text">') == 6
 
 
 def test_that_page_and_document_name_settings_versions_and_hashes(

@@ -1,17 +1,10 @@
 """A recipe is the same bytes whoever works on it and however often it is killed; failures are told."""
 
-import contextlib
 import csv
 import json
 import multiprocessing
 import os
-import shutil
 import signal
-import sqlite3
-import subprocess
-import sys
-import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +24,6 @@ from regolith_studio.studies import lmax
 from tests.files import contents
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
-ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -150,36 +142,6 @@ def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
     assert contents(tmp_path / "out") == contents(done(given_recipe, grains, tmp_path / "whole").folder)
 
 
-def n_records(checkpoint: Path) -> int:
-    """Records in a checkpoint, read from a copy: the file itself is locked while a run writes to it."""
-    with tempfile.TemporaryDirectory() as place, contextlib.suppress(sqlite3.Error, FileNotFoundError):
-        copied = shutil.copy(checkpoint, place)
-        with contextlib.closing(sqlite3.connect(copied)) as database:
-            return int(database.execute("SELECT count(*) FROM records").fetchone()[0])
-    return 0
-
-
-def killed(given_recipe: Path, folder: Path, records: int) -> None:
-    """Start the command and kill it once its checkpoint has so many records."""
-    command = [
-        sys.executable,
-        "-m",
-        "regolith_studio",
-        "run",
-        str(given_recipe),
-        "-o",
-        str(folder),
-        "--resume",
-    ]
-    checkpoint = folder / "journal" / "checkpoint.sqlite"
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
-        while process.poll() is None:
-            if n_records(checkpoint) >= records:
-                process.send_signal(signal.SIGKILL)
-                break
-            time.sleep(0.001)
-
-
 def test_that_a_run_that_has_ended_is_not_done_again(grains: Path, tmp_path: Path) -> None:
     first = done(recipe(grains), grains, tmp_path / "out")
     stamp = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("*.stl")}
@@ -247,13 +209,6 @@ def test_that_a_recipe_divides_radii_by_the_reference_that_it_names(tmp_path: Pa
     document = json.loads((folder / "dataset" / "dataset.json").read_text())["metadata"]
     assert document["angular_power_spectrum_um2"] is None
     assert "reference ellipsoid" in " ".join(document["processing_steps"])
-
-
-def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> None:
-    given_recipe = recipe_of(inputs=[], population={"sources": ["cheese"], "n": 4})
-    with pytest.raises(InputError, match=r"no material card 'cheese'"):
-        done(given_recipe, tmp_path, tmp_path / "out")
-    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow

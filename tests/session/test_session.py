@@ -9,14 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.session import recompute
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 
@@ -70,14 +68,6 @@ def test_that_opening_selects_the_first_particle_and_computes_everything(opened:
     assert opened.tasks == ()
 
 
-def test_that_every_row_gets_health_and_descriptors(opened: Session) -> None:
-    for entry in opened.particles:
-        assert entry.health is not None
-        assert entry.health.sound
-        assert entry.descriptors is not None
-        assert entry.descriptors["volume"] == pytest.approx(entry.particle.mesh.volume)
-
-
 def test_that_moving_l_max_draws_another_surface_and_keeps_the_fit(opened: Session) -> None:
     before = opened.results
     received = listen(opened, "fit", "surface", "descriptors", "coarsening")
@@ -87,13 +77,6 @@ def test_that_moving_l_max_draws_another_surface_and_keeps_the_fit(opened: Sessi
     assert received[0] == "surface"
     assert "fit" not in received
     assert {"descriptors", "coarsening"} <= set(received)
-
-
-def test_that_moving_a_weight_leaves_fit_and_surface_alone(opened: Session) -> None:
-    before = opened.results
-    opened.choose(weights=LossWeights.of(volume=1.0))
-    assert opened.results.surface is before.surface
-    assert opened.results.coarsened is not before.coarsened
 
 
 def test_that_the_particle_itself_can_be_imitated(opened: Session) -> None:
@@ -117,27 +100,6 @@ def test_that_a_polyhedron_of_the_fit_is_compared_with_the_particle(opened: Sess
     assert found.errors["volume"] == pytest.approx(abs(1.0 - volume / mesh.volume), rel=1e-6)
     assert found.errors["aspect_ratio"] > 0.4  # axes of 60 x 40 x 30: 2 against about 1
     assert found.jaccard_distance > 0.2
-
-
-def test_that_going_back_to_a_particle_finds_its_fit_again(opened: Session) -> None:
-    first = opened.results.fit
-    opened.select("grain-2")
-    assert opened.results.fit is not first
-    opened.select("grain-0")
-    assert opened.results.fit is first
-
-
-def test_that_only_the_last_fits_are_at_hand(opened: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recompute, "MAX_CACHED_FITS", 2)
-    first = opened.results.fit
-    opened.select("grain-1")
-    second = opened.results.fit
-    opened.select("grain-2")
-    opened.select("grain-1")
-    assert opened.results.fit is second
-    opened.select("grain-0")
-    assert opened.results.fit is not first
-    assert opened.results.fit.coefficients.values == pytest.approx(first.coefficients.values)  # type: ignore[union-attr]
 
 
 def test_that_another_reference_makes_another_fit_and_going_back_finds_the_first(opened: Session) -> None:
@@ -315,14 +277,6 @@ def test_that_a_degree_without_a_solid_clears_the_old_picture(
     opened.choose(l_max=6)
     assert opened.results.surface is not None
     assert opened.results.coarsened is not None
-
-
-def test_that_the_particle_is_measured_once_whatever_l_max(opened: Session) -> None:
-    before = opened.results.particle_descriptors
-    opened.choose(l_max=2)
-    assert opened.results.particle_descriptors is before
-    opened.choose(box_metric="trimesh")
-    assert opened.results.particle_descriptors is not before
 
 
 def test_that_a_change_of_choices_names_the_fields_that_have_changed(opened: Session) -> None:

@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.settings import ExtractionSettings, SplittingSettings
+from regolith_studio.imaging.settings import SplittingSettings
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
@@ -168,15 +168,6 @@ def extracted(session: Session, given: VolumeInput, settings: GrainSettings) -> 
         found, grey = result_of(find_grains(scan, settings.segmentation)).segmentation.labels, found
     made = result_of(extract_labels(found, settings.extraction, given.path, grey))
     session.adopt(made.particles, origin=VolumeSource.of(entry_of(given, settings), made.particles))
-
-
-def test_that_grains_of_a_label_volume_are_the_same_in_a_run(
-    session: Session, tmp_path: Path, labels: Path
-) -> None:
-    settings = GrainSettings(extraction=ExtractionSettings(min_voxels=200, iterations=5))
-    extracted(session, VolumeInput(labels, 0.002, "mm"), settings)
-    assert len(session.particles) == 3
-    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
 
 
 def test_that_chosen_grains_and_a_mesh_beside_them_are_the_same_in_a_run(

@@ -25,8 +25,8 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.appearance import FONT_SIZE, Appearance
-from regolith_studio.ui.layout import padded, restore_borders
+from regolith_studio.ui.appearance import FONT_SIZE
+from regolith_studio.ui.layout import restore_borders
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.result_card import MAGNIFICATION, ResultView
 from regolith_studio.ui.startup import open_window
@@ -36,7 +36,6 @@ from regolith_studio.ui.theme import (
     apply_theme,
     choose_font_size,
     choose_theme,
-    current_theme,
     pixmap,
 )
 from regolith_studio.ui.widgets.fields import ElidedComboBox
@@ -49,19 +48,6 @@ def usual_looks(app):
     choose_theme("system")
     choose_font_size(None)
     app.setFont(font)
-
-
-@pytest.mark.usefixtures("app", "usual_looks")
-def test_that_only_another_look_is_applied(shown, preferences):
-    applied = []
-    appearance = Appearance(preferences, lambda: applied.append(current_theme()), shown(QWidget()))
-    appearance.choose(theme="dark")
-    appearance.choose(theme="dark")
-    appearance.choose(language="de")
-    assert applied == [DARK]
-    appearance.choose(**{FONT_SIZE: 120})
-    assert applied == [DARK, DARK]
-    assert preferences.window["language"] == "de"
 
 
 def sizes_of_letters(window):
@@ -166,18 +152,6 @@ def test_that_what_is_written_into_can_be_seen_on_the_ground_of_plots(app, shown
         edge = picture.pixelColor(corner + QPoint(0, field.height() // 2)).lightness()
         fill = picture.pixelColor(corner + QPoint(3, 3)).lightness()
         assert max(fill - ground, ground - edge) >= least, theme.dark
-
-
-def test_that_parts_take_their_style_once_when_they_come_into_the_window(app, shown):
-    window = shown(QWidget())
-    apply_theme(app, LIGHT, window)
-    part, styled = QWidget(), []
-    part.changeEvent = lambda event: styled.append(event.type())
-    for _ in range(3):
-        part_of = padded(part, 0, 0, 0, 0)
-    assert QEvent.Type.StyleChange not in styled
-    QVBoxLayout(window).addWidget(part_of)
-    assert styled.count(QEvent.Type.StyleChange) == 1
 
 
 def pictures_of_pages(window, keys, wait, settled):

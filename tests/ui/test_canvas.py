@@ -63,22 +63,3 @@ def test_that_the_same_is_drawn_as_by_the_widget_of_pyqtgraph(shown, log, act):
         ranges.append(canvas.getViewBox().viewRange())
     assert np.allclose(*ranges)
     assert pictures[0] == pictures[1]
-
-
-def test_that_curves_that_come_after_the_scale_take_it(shown):
-    canvas = shown(PlotCanvas(axes()))
-    canvas.setLogMode(x=False, y=True)
-    curve = canvas.plot(STEPS, 10.0**STEPS)
-    assert np.allclose(curve.getData()[1], STEPS)
-    canvas.setLogMode(x=True, y=False)
-    assert np.allclose(curve.getData()[0], np.log10(STEPS))
-    assert np.allclose(curve.getData()[1], 10.0**STEPS)
-
-
-def test_that_what_is_removed_is_seen_no_longer_and_what_never_was_there_does_no_harm(shown):
-    canvas = shown(PlotCanvas(axes()))
-    curve = canvas.plot(STEPS, STEPS)
-    canvas.removeItem(curve)
-    canvas.removeItem(curve)
-    canvas.removeItem(pg.PlotDataItem(STEPS, STEPS))
-    assert curve.scene() is None

@@ -16,8 +16,6 @@ from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.labels import grouped_number
 
-SECONDS = 120.0
-
 
 def actor(window, view, name):
     found = window.page.three_views.views[view]._plotter.actors.get(name)

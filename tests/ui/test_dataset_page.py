@@ -24,8 +24,8 @@ from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.pages.dataset.export_panel import groups
 from regolith_studio.ui.pages.dataset.views import GalleryItem, RepresentativesGallery
 from regolith_studio.ui.result_card import ResultState
-from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
-from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
+from regolith_studio.ui.theme import choose_font_size
+from regolith_studio.ui.widgets.thumbnails import thumbnail
 from tests.dataset.example import elbow_entry, entry
 
 
@@ -251,16 +251,6 @@ def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:
     assert case["test"]["lift_speed"] == 0.05
 
 
-def test_that_settings_of_contact_and_test_are_restored(page) -> None:
-    changed = {"contact": {"poissons_ratio": 0.25}, "test": {"wall_friction": 0.1, "mass": 0.02}}
-    page.targets.setValue({"targets": ["rocky"]} | changed)
-    options = page.targets.options()
-    assert options.contact.poissons_ratio == 0.25
-    assert (options.test.wall_friction, options.test.mass) == (0.1, 0.02)
-    page.targets.setValue(page.targets.value())
-    assert page.targets.options() == options
-
-
 def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     chosen.export()
@@ -273,13 +263,6 @@ def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monk
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Yes)
     chosen.export()
     wait(lambda: len(read_dataset(tmp_path / "regolith")) == 5)
-
-
-def test_that_a_folder_of_others_is_told_and_left_alone(chosen, tmp_path) -> None:
-    (tmp_path / "thesis.txt").write_text("important")
-    chosen.build_in(tmp_path)
-    assert chosen.result.record.state is ResultState.FAILED
-    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
 @pytest.mark.slow
@@ -447,14 +430,6 @@ def test_that_a_choice_by_volume_does_not_change_the_number_stated_before_it_is_
     assert page.targets.preview.text() == by_number
 
 
-@pytest.mark.slow
-def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
-    chosen.session.adopt(grains(5, first=30))
-    wait(lambda: not chosen.gallery.shown)
-    assert chosen.quality.is_empty()
-    assert chosen.representatives.count.slider.maximum() == 5
-
-
 def test_that_a_page_without_particles_says_what_to_do(page) -> None:
     assert "No particles are open" in page.representatives.population.text()
     assert "open files, the sample, or draw some" in page.gallery.empty.text()
@@ -490,13 +465,6 @@ def test_that_what_was_set_comes_back(page) -> None:
     assert page.state()["sizes"] == state["sizes"]
 
 
-@pytest.mark.slow
-def test_that_themes_reach_every_part(chosen) -> None:
-    for theme in (DARK, LIGHT):
-        chosen.set_theme(theme)
-    assert chosen.gallery.shown
-
-
 @pytest.mark.usefixtures("app")
 def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
     cube = grains(1)[0].mesh.hull
@@ -506,13 +474,6 @@ def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
     assert image.pixelColor(32, 32).alpha() == 255
     tones = {image.pixelColor(x, y).rgb() for x in range(16, 48) for y in range(16, 48)}
     assert len(tones) > 5
-
-
-@pytest.mark.usefixtures("app")
-def test_that_the_window_answers_while_a_picture_is_painted() -> None:
-    fine = icosphere(4)
-    steps = list(paint_thumbnail(fine, "#c08040"))
-    assert len(steps) == -(-len(fine.faces) // 2 // TRIANGLES_PER_STEP), "half of its triangles face the eye"
 
 
 def tree(folder):

@@ -103,13 +103,6 @@ def test_that_the_box_asks_for_the_picture_without_faults(panel):
     assert asked == [False]
 
 
-def test_that_the_health_is_told_in_german(panel, speaking):
-    speaking("de")
-    panel.show_entry(entry(ugly()))
-    assert "Es besteht aus 2 getrennten Körpern." in panel.words.text()
-    assert cells(panel)["Geschlossen"] == ("nein", "ja")
-
-
 def test_that_every_kind_of_fault_has_a_name_and_a_colour():
     assert set(KINDS) == set(FAULT_COLOURS)
 

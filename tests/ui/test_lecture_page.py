@@ -1,7 +1,6 @@
 """The page "Lecture": played, stepped, drawn anew; every formula can be set."""
 
 import re
-import threading
 from functools import partial
 
 import numpy as np
@@ -23,8 +22,7 @@ from regolith_studio.ui.pages.lecture import PAGE, texts
 from regolith_studio.ui.pages.lecture.lessons import PlaybackBar
 from regolith_studio.ui.theme import DARK, LIGHT, choose_font_size
 from regolith_studio.ui.views.view import ViewFrame
-from regolith_studio.ui.widgets import formula
-from regolith_studio.ui.widgets.formula import FormulaLabel, outline
+from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.plots.base import Plot
 
 EGG = icosphere(3).moved(rotation=np.diag([30.0, 20.0, 45.0]))
@@ -266,56 +264,12 @@ def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown, wait):
         assert all(colour == ground for colour in right)
 
 
-def test_that_formulas_are_set_by_one_thread_and_shown_when_all_lines_are(shown, wait, monkeypatch):
-    at_work, most, looked = [], [], threading.Event()
-    usual = formula.TextPath
-
-    def watched(*arguments, **options):
-        assert looked.wait(60.0)
-        at_work.append(threading.current_thread())
-        most.append(len(at_work))
-        made = usual(*arguments, **options)
-        assert at_work.pop() is not threading.main_thread()
-        return made
-
-    monkeypatch.setattr(formula, "TextPath", watched)
-    labels = [shown(FormulaLabel(words)) for words in ("first", "second")]
-    monkeypatch.setattr(formula, "_outlines", {})
-    small = [label.sizeHint() for label in labels]
-    for label, name in zip(labels, "xy", strict=True):
-        label.set_lines(f"${name}_1$", f"${name}_2$")
-        assert label.lines() == (f"${name}_1$", f"${name}_2$")
-    assert not formula._outlines
-    assert [label.sizeHint() for label in labels] == small
-    looked.set()
-    wait(lambda: all(label.sizeHint().height() > size.height() for label, size in zip(labels, small)))  # noqa: B905
-    assert most == [1, 1, 1, 1]
-
-
 def test_that_a_label_whose_formula_was_never_set_can_go(shown, wait):
     label, other = FormulaLabel("gone"), shown(FormulaLabel("stays"))
     label.set_lines(r"$never\;set$")
     shiboken6.delete(label)
     other.set_lines(r"$set\;at\;last$")
     wait(lambda: other.sizeHint().width() > 20)
-
-
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_that_others_are_set_after_what_is_no_formula(shown, wait):
-    label, other = shown(FormulaLabel("nonsense")), shown(FormulaLabel("sound"))
-    label.set_lines(r"$\nonsense$")
-    other.set_lines(r"$sound\;after\;nonsense$")
-    wait(lambda: other.sizeHint().width() > 20)
-    assert label.sizeHint().width() <= 2
-
-
-def test_that_what_is_no_formula_is_refused(app):  # noqa: ARG001
-    with pytest.raises(ValueError, match="Unknown symbol"):
-        outline(r"$\nonsense$")
-
-
-def test_that_the_height_of_a_fraction_is_that_of_its_outline(app):  # noqa: ARG001
-    assert outline(r"$\frac{1}{2}$").boundingRect().height() > outline("$1$").boundingRect().height()
 
 
 @pytest.mark.slow
@@ -388,7 +342,3 @@ def test_that_the_number_of_a_step_has_room_in_letters_that_the_label_gets_later
         bar.resize(300, bar.sizeHint().height())
         app.processEvents()
         assert bar.clock.width() >= bar.clock.fontMetrics().horizontalAdvance(bar.clock.text())
-
-
-def test_that_the_names_of_terms_have_subscripts():
-    assert [texts.plain(key) for key in ("jaccard_distance", "min_diameter", "volume")] == ["J", "Dₘᵢₙ", "V"]

@@ -10,7 +10,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QLabel
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -18,7 +17,6 @@ from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.synthesis import level_for
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners import InlineRunner
-from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
@@ -28,7 +26,7 @@ from regolith_studio.steps import result_of
 from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.ui.pages.model import PAGE
-from regolith_studio.ui.pages.model.controls import DistributionsPanel, distance_text
+from regolith_studio.ui.pages.model.controls import DistributionsPanel
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.theme import LIGHT
 from regolith_studio.ui.translation import translate
@@ -277,15 +275,6 @@ def test_that_the_parts_of_a_mixture_are_named(page):
     assert page.drawing.names.text() == "basalt, glass"
 
 
-@pytest.mark.slow
-def test_that_half_of_the_sample_can_be_kept_away_from_the_model(page):
-    take(page, rough_sample())
-    page.source.half.setChecked(True)
-    page.source.fit.click()
-    assert page._fitted.n_fitted == 15
-    assert len(page._sample()) == 30
-
-
 def test_that_what_cannot_be_done_is_said(page):
     said = []
     page._context.toast.problem = lambda sentence, *_: said.append(sentence)
@@ -351,42 +340,6 @@ def test_that_what_is_fitted_drawn_and_judged_goes_through_the_translation(opene
             for column in range(table.columnCount())
         ]
         assert [cell for cell in cells if any(map(str.isalpha, cell)) and "⟦" not in cell] == []
-
-
-@pytest.mark.slow
-def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
-    speaking("de")
-    page = opened()
-    page.source.choose_source("ma165")
-    assert page.source.source.currentText() == "Satz MA165 (synthetisch)"
-    assert "Von Regolith Studio synthetisiert" in page.source.findings.text()
-    assert "6.261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165" in page.source.findings.text()
-    take(page, rough_sample())
-    page.source.fit.click()
-    page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
-    page.evaluate()
-    words = page.evaluation.notes.text()
-    assert words.startswith("30 gemessene Partikel mit Graden bis 4, 0 ausgelassen;")
-    assert words.endswith("1 Teilung, je Anpassung 2 Mal 20 gezogen, Startwert 0.")
-    wanted = column_texts(page.evaluation.tables["targets"], 4)
-    assert {text.split()[0] for text in wanted} == {"mindestens", "höchstens"}
-    values = {"name": Message("Mixture of Gaussian fields"), "split": 2, "draw": 3}
-    step = Message("{name}, split {split}, draw {draw}", **values)
-    assert translate(step) == "Mischung von Gaußfeldern, Teilung 2, Ziehung 3"
-    assert (
-        translate(Message("noise of sampling, split {split}", split=30))
-        == "Rauschen der Stichprobe, Teilung 30"
-    )
-
-
-def test_that_the_means_of_distributions_have_units_and_the_same_digits():
-    halves = np.full(2, 0.5)
-    words = distance_text(
-        Distribution(np.array([40.0, 42.56]), halves), Distribution(np.array([40.0, 41.8]), halves), "µm"
-    )
-    assert words.endswith("means 41.28 µm measured, 40.90 µm drawn")
-    ratios = Distribution(np.array([0.25, 0.75]), halves)
-    assert distance_text(ratios, ratios).endswith("means 0.5000 measured, 0.5000 drawn")
 
 
 def test_that_draws_are_shown_in_units_of_noise_the_farthest_first(shown):

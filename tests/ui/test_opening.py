@@ -142,9 +142,6 @@ def test_that_every_page_has_a_chapter_of_the_guide_without_directives():
     )
 
 
-ACCEPTED = QDialog.DialogCode.Accepted
-
-
 def write_ball(path, radius):
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(stl_bytes(icosphere(1).moved(scale=radius).triangles, "ball"))

@@ -10,7 +10,6 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.events import Job, Partial, Progress, Started
-from regolith_studio.jobs.particle_jobs import load_sample
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
@@ -208,26 +207,6 @@ def test_that_what_a_page_remembers_is_kept_apart_from_the_others(stack, prefere
     assert two.recall("split", "nothing") == "nothing"
     assert one.recall("split") == [1, 2]
     assert preferences.window == {"page.one": {"split": [1, 2]}}
-
-
-def test_that_particles_made_by_a_page_are_open_everywhere(stack):
-    loaded = next(iter(_outcome(load_sample())))
-    session = stack.session
-    session.adopt(loaded.particles[:2])
-    assert [entry.id for entry in session.particles] == [each.name for each in loaded.particles[:2]]
-    assert all(entry.descriptors is not None for entry in session.particles)
-    assert session.choices.selected == session.particles[0].id
-    session.adopt(loaded.particles[:1], add=True)
-    assert len({entry.id for entry in session.particles}) == 3
-
-
-def _outcome(steps):
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            yield end.value
-            return
 
 
 def test_that_the_message_of_a_failure_goes_when_the_next_run_of_its_kind_begins(stack):

@@ -20,9 +20,6 @@ from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.ray_casting import jaccard_distance
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.fit_options import AUTOMATIC
-from regolith_studio.harmonics.radius_function import REFERENCES, RULES
-from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one
 from regolith_studio.jobs.events import Partial
 from regolith_studio.session.choices import Choices
@@ -78,14 +75,6 @@ def test_that_a_value_written_into_a_panel_is_read_back_and_not_announced(shown,
     assert heard == []
 
 
-def test_that_the_fit_panel_offers_every_way_to_take_a_radius(shown):
-    panel = shown(FitPanel())
-    known = {"star_point": {AUTOMATIC, *STAR_POINT_RULES}, "rule": set(RULES), "reference": set(REFERENCES)}
-    for name, keys in known.items():
-        box = panel.ways[name]
-        assert {box.itemData(row) for row in range(box.count())} == keys
-
-
 def test_that_another_reference_is_announced_as_one_step(shown):
     panel, heard, ended = shown(FitPanel()), [], []
     panel.valueChanged.connect(heard.append)
@@ -94,11 +83,6 @@ def test_that_another_reference_is_announced_as_one_step(shown):
     QTest.keyClick(panel.ways["reference"], Qt.Key.Key_Down)
     assert heard == [{"reference": "ellipsoid"}]
     assert ended == [True]
-
-
-@pytest.mark.parametrize("kind", [*VALUES, ParticleListPanel])
-def test_that_what_a_panel_edits_are_choices(kind):
-    assert all(hasattr(Choices(), name) for name in kind.FIELDS)
 
 
 @pytest.mark.parametrize("kind", VALUES)
@@ -151,11 +135,6 @@ def test_that_methods_that_know_weights_only_have_no_locks(shown):
     assert "keeps" not in panel.origin.toolTip()
     panel.set_keeps_terms(True)
     assert panel.locks["volume"].isChecked()
-
-
-def test_that_there_is_a_slider_for_every_term_of_the_loss(shown):
-    panel = shown(LossPanel())
-    assert set(panel.sliders) == set(LossWeights.of())
 
 
 def test_that_another_method_drops_the_settings_of_the_first(shown):
@@ -229,16 +208,6 @@ def test_that_a_list_of_any_width_shows_whole_names_and_whole_columns(shown, wai
         assert all(table.columnWidth(each) >= table.sizeHintForColumn(each) for each in seen())
     tip = table.model().index(0, 0).data(Qt.ItemDataRole.ToolTipRole)
     assert tip.startswith("agglutinate-1\nV [µm³] ")
-
-
-def test_that_the_list_keeps_its_row_when_more_becomes_known(shown):
-    panel, heard = shown(ParticleListPanel()), []
-    panel.set_entries([entry("a"), entry("b")])
-    panel.setValue({"selected": "b"})
-    panel.valueChanged.connect(heard.append)
-    panel.set_entries([measured("a", 1.0), measured("b", 2.0)])
-    assert panel.table.currentIndex().row() == 1
-    assert heard == []
 
 
 def test_that_the_list_sorts_by_number_and_not_by_text(shown):

@@ -111,14 +111,6 @@ def test_that_a_thousand_changes_leave_a_sound_model(rows):
         assert set(listed(rows)) <= {entry.id for entry in rows.entries}
 
 
-def test_that_there_is_no_cell_beyond_the_last_nor_below_another(rows):
-    assert rows.index(4, 2).isValid()
-    for row, column in ((5, 0), (0, 3), (-1, 0), (0, -1)):
-        assert not rows.index(row, column).isValid()
-    assert not rows.index(0, 0, rows.index(0, 0)).isValid()
-    assert rows.index(0, 0).data(Qt.ItemDataRole.FontRole) is None
-
-
 def test_that_numbers_that_are_not_known_yet_stand_below_all_others(app):
     made = ParticleTableModel(particle_columns("name", "volume"), app)
     unknown = ParticleEntry("u", Particle("u", MESH), None, {})

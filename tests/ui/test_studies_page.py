@@ -110,20 +110,6 @@ def test_that_one_loss_always_stays(shown):
     assert bar.names() == paper_names()
 
 
-@pytest.mark.slow
-def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_error(window, settled):
-    page = window.go("studies")
-    window.session.choose(n_facets=24)
-    settled(window)
-    assert page.bar.hint_label.text() == ""
-    window.session.choose(stop_at="error")
-    settled(window)
-    assert page.bar.hint_label.text() == "compared at 24 facets each"
-    window.session.choose(stop_at="facets")
-    settled(window)
-    assert page.bar.hint_label.text() == ""
-
-
 def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settled, tmp_path, monkeypatch):
     page = window.go("studies")
     page.tabs.setCurrentIndex(1)
@@ -267,12 +253,6 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
         SECONDS,
     )
     assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg", ".sha256"}
-
-
-@pytest.mark.slow
-def test_that_saving_before_computing_is_told(window):
-    window.go("studies").save()
-    assert window.toast.sentence.text() == "Compute a study first."
 
 
 def test_that_a_study_that_cannot_be_written_leaves_the_earlier_files(tmp_path, monkeypatch):

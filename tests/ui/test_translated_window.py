@@ -5,7 +5,6 @@ screen was never asked to be translated.
 """
 
 import contextlib
-import re
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,6 @@ from PySide6.QtCore import QLocale
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QDialogButtonBox, QMenu, QMessageBox, QScrollArea
 
-from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.readers.volumes.header import DatasetEntry, VolumeHeader
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.actions import CommandPalette
@@ -27,7 +25,7 @@ from regolith_studio.ui.pages.explore.page import PictureDialog
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.project_files import may_close
 from regolith_studio.ui.startup import open_window
-from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation import tr
 from tests.ui.reading import cut_off, english_left, points_left
 
 SECONDS = 120.0
@@ -132,19 +130,6 @@ def test_that_no_words_on_the_way_from_a_scan_to_particles_go_past_the_translati
         dialog = VolumeDialog(tmp_path / "a.h5", header)
         assert english_left(dialog) == []
         dialog.deleteLater()
-
-
-@pytest.mark.slow
-def test_that_what_a_scan_holds_is_told_in_german_and_nothing_of_it_is_cut(scanned, speaking, assert_fits):
-    speaking("de")
-    page = scanned()
-    told = page.workflow.found.text()
-    assert re.match(r"Im Rahmen: \d+ Körner aus \d+ zusammenhängenden Körpern\. ", told)
-    assert told.endswith("Ein Klick in ein Schichtbild verschiebt den Rahmen.")
-    assert_fits(page)
-    page.workflow.set_particles(translate(Extraction((), tuple(range(14)), (), 46).summary))
-    assert page.workflow.made.text() == "46 Partikel; weggelassen: 14 am Rand, 0 zu klein."
-    assert_fits(page)
 
 
 def test_that_the_dialogs_of_qt_and_the_keys_speak_german(opened, speaking):

@@ -4,7 +4,6 @@ import ast
 import re
 import shutil
 import string
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,10 +14,6 @@ import pytest
 from regolith_studio.coarsening.lower_bounds import max_sphericity, sphericity_reason
 from regolith_studio.coarsening.reasons import MISSED, MISSED_BY, NAMES
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.extraction import Extraction
-from regolith_studio.imaging.segmentation.segment import Segmentation
-from regolith_studio.imaging.segmentation.thresholding import Histogram
-from regolith_studio.imaging.volume import Volume
 from regolith_studio.messages import Message, join_messages
 from regolith_studio.resources import resource
 from regolith_studio.shape_models.models import MODELS
@@ -154,25 +149,6 @@ def test_that_a_filter_takes_the_words_that_are_read_and_the_english_ones(speaki
     speaking("de")
     assert in_english("Klingenförmig S<0.8 fehlerfrei flat-2") == "blade S<0.8 sound flat-2"
     assert in_english("blade") == "blade"
-
-
-@pytest.mark.parametrize("grains", [1, 60])
-@pytest.mark.parametrize("bodies", [1, 3])
-def test_that_the_result_of_a_search_for_grains_is_in_the_language_chosen_later(grains, bodies, speaking):
-    speaking("de")
-    volume = Volume(np.ones((2, 2, 2), dtype=np.int32), (1.0,) * 3, "labels", "a")
-    seen = Histogram(np.array([8]), np.array([0.0, 1.0]))
-    found = Segmentation(volume, np.full(grains, 8), 103.5, seen, bodies, 2)
-    counts = (
-        f"{grains} {'Korn' if grains == 1 else 'Körner'} aus {bodies} zusammenhängenden"
-        f" {'Körper' if bodies == 1 else 'Körpern'}"
-    )
-    assert translate(found.counts) == counts
-    assert translate(found.summary) == f"{counts} bei Grauwert 103,5; 2 zu klein."
-    of_map = replace(found, probability=0.5)
-    assert translate(of_map.summary) == f"{counts} bei Wahrscheinlichkeit 0,5; 2 zu klein."
-    made = Extraction((), (1, 2), (3,), grains).summary
-    assert translate(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."
 
 
 def _literal(node: ast.expr) -> str | None:

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,34 +11,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import instancing, surfaces
 from regolith_studio.scene.cameras import CameraPose, framing_pose
 from regolith_studio.scene.palette import DARK
-from regolith_studio.session.results import ParticleEntry, Results
-from regolith_studio.ui.startup import best_kind
 from regolith_studio.ui.views.image_view import make_view
-from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.views.view import CameraLink
 
 BALL = icosphere(3).moved(scale=20.0)
-CUBE = ConvexPolyhedron.from_half_spaces(HalfSpaces(np.vstack([np.eye(3), -np.eye(3)]), np.full(6, 10.0)))
 EGG = BALL.moved(rotation=np.diag([1.0, 0.5, 1.6]))
-
-
-def test_that_a_polyhedron_that_has_not_changed_is_not_drawn_again(shown, monkeypatch):
-    views = shown(ThreeViews("image", lambda *_: None))
-    views.show_particle(ParticleEntry("ball", Particle("ball", BALL)))
-    drawn = []
-    monkeypatch.setattr(surfaces, "show_polyhedron", lambda *_: drawn.append(1))
-    results = Results(best=SimpleNamespace(polyhedron=CUBE, centre=(0.0, 0.0, 0.0)))
-    views.show_polyhedron(results)
-    views.show_polyhedron(replace(results, against_particle={}))
-    assert len(drawn) == 1
-    views.release()
 
 
 @pytest.fixture(params=["image", pytest.param("live", marks=pytest.mark.window)])
@@ -216,12 +196,3 @@ def test_that_linked_cameras_move_together_until_they_are_let_go(make):
     link.look_from("top")
     assert alike(one.pose, two.pose)
     assert one.pose.view_up == (0.0, 1.0, 0.0)
-
-
-@pytest.mark.usefixtures("app")
-def test_that_the_variable_chooses_the_backend(monkeypatch):
-    monkeypatch.setenv("REGOLITH_STUDIO_VIEWS", "image")
-    assert best_kind() == "image"
-    monkeypatch.delenv("REGOLITH_STUDIO_VIEWS")
-    if QGuiApplication.platformName() == "offscreen":
-        assert best_kind() == "image"

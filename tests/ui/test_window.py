@@ -197,15 +197,6 @@ def test_that_bad_files_among_good_ones_are_told_and_the_good_ones_open(window, 
     assert "Traceback" not in said
 
 
-@pytest.mark.slow
-def test_that_one_bad_file_among_good_ones_is_its_sentence(window, wait, tmp_path):
-    stl(tmp_path / "egg.stl")
-    (tmp_path / "empty.ply").touch()
-    window.commands.open_paths([tmp_path], "um")
-    wait(window.toast.isVisible, SECONDS)
-    assert window.toast.sentence.text() == "empty.ply is empty: it has no bytes at all."
-
-
 def test_that_an_error_of_the_program_is_told_and_survived(shown, capsys):
     toast = Toast(shown(QWidget()))
     hook = make_excepthook(toast.problem)
@@ -262,20 +253,6 @@ def test_that_the_window_follows_dark_and_light(window, wait):
     window.menus.by_name["theme_light"].trigger()
     assert current_theme() is LIGHT
     window.menus.by_name["theme_system"].trigger()
-
-
-@pytest.mark.slow
-def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, shown, preferences, wait):
-    busy = []
-    monkeypatch.setattr("regolith_studio.ui.startup.IDLE", 20)
-    monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: busy.append(len(window.session.tasks)))
-    window = open_window(views="image", preferences=preferences)
-    shown(window)
-    wait(lambda: window.session.results.coarsened is not None and bool(busy), SECONDS)
-    busy.clear()
-    window.session.choose(l_max=5)
-    wait(lambda: bool(busy), SECONDS)
-    assert set(busy) == {0}
 
 
 def work_without_end():

@@ -1,6 +1,5 @@
 """What makes the window a workbench: palette, projects, recovery, tasks, log, tour, layout, closing."""
 
-import json
 import os
 import threading
 from datetime import datetime
@@ -414,12 +413,6 @@ def test_that_what_is_done_can_be_copied_as_command_and_as_python(window):
     assert QApplication.clipboard().text().startswith("regolith-studio coarsen sample:all")
     window.menus.by_name["copy_python"].trigger()
     compile(QApplication.clipboard().text(), "copied", "exec")
-
-
-@pytest.mark.slow
-def test_that_preferences_of_the_window_are_plain_json(window):
-    window.close()
-    assert json.loads(json.dumps(window.preferences.window)) == window.preferences.window
 
 
 @pytest.mark.slow

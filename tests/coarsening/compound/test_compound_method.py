@@ -8,7 +8,6 @@ import trimesh
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.line_overlap import compound_distance
-from regolith_studio.coarsening.optimiser.compound_search import numbers_of_parts, shared_out
 from regolith_studio.coarsening.stopping_criteria import coarsen_below
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -137,11 +136,6 @@ def test_that_a_convex_particle_gets_the_polyhedron_of_the_exact_method() -> Non
     assert found.mesh.content_hash == exact.mesh.content_hash
 
 
-def test_that_too_few_facets_for_two_parts_make_one(mesh: Mesh) -> None:
-    assert coarsen(mesh, 8, "compound").n_parts == 1
-    assert coarsen(mesh, 16, "compound").n_parts == 2
-
-
 def test_that_one_body_takes_the_place_of_two_poor_parts_and_says_what_it_misses(mesh: Mesh) -> None:
     found = coarsen(mesh, 10, "compound")
     assert found.n_parts == 1
@@ -158,15 +152,6 @@ def test_that_parts_neither_overlap_nor_touch_is_one_sentence(mesh: Mesh) -> Non
 def test_that_a_number_of_parts_out_of_range_is_one_sentence(mesh: Mesh, parts: float) -> None:
     with pytest.raises(InputError, match="must be a whole number"):
         coarsen(mesh, 20, "compound", settings={"parts": parts})
-
-
-def test_that_facets_are_shared_out_by_area() -> None:
-    assert shared_out(np.array([1.0, 1.0, 6.0]), np.full(3, 5), 40).tolist() == [5, 5, 30]
-    assert shared_out(np.array([1.0, 1.0]), np.array([7, 5]), 12).tolist() == [7, 5]
-
-
-def test_that_the_first_starts_have_different_numbers_of_parts() -> None:
-    assert [numbers_of_parts(most) for most in (2, 3, 4, 8)] == [(2,), (3, 2), (4, 3, 2), (8, 6, 4, 2)]
 
 
 @pytest.mark.slow
