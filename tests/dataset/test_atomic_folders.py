@@ -80,24 +80,6 @@ def test_that_a_failing_call_leaves_the_old_dataset_or_the_new_one(
     assert refused >= 6
 
 
-def test_that_a_failing_call_leaves_no_dataset_where_there_was_none(
-    tmp_path, monkeypatch, make_dataset
-) -> None:
-    new = make_dataset(1)
-    steps = calls_of(monkeypatch, lambda: write_dataset(tmp_path / "first", new))
-    for step in range(1, steps + 1):
-        folder = tmp_path / f"set{step}"
-        with monkeypatch.context() as patch:
-            Failing(patch, step)
-            try:
-                write_dataset(folder, new)
-            except DatasetError:
-                assert not folder.exists()
-            else:
-                assert validate_dataset(folder) == []
-        assert leftovers(folder) == []
-
-
 DRIVER = """
 import json, os, signal, sys
 from pathlib import Path
@@ -214,25 +196,9 @@ def test_that_a_folder_moved_aside_by_a_writer_that_died_is_put_back(tmp_path: P
     assert recover_folder(folder).is_dir()
 
 
-def test_that_without_a_swap_the_folder_is_still_replaced(tmp_path: Path, monkeypatch, make_dataset) -> None:
-    monkeypatch.setattr(atomic, "swap_folders", lambda *_: False)
-    write_dataset(tmp_path / "set", make_dataset(1))
-    write_dataset(tmp_path / "set", make_dataset(1, first=10))
-    assert names(tmp_path / "set") == ["grain-10"]
-    assert [path.name for path in tmp_path.iterdir()] == ["set"]
-
-
 def test_that_leftovers_of_dead_writers_are_cleared_by_the_next_one(tmp_path: Path, make_dataset) -> None:
     (tmp_path / f".set.{'a' * 12}.regolith-new").mkdir()
     other = tmp_path / f".set.b.{'b' * 12}.regolith-new"
     other.mkdir()
     write_dataset(tmp_path / "set", make_dataset(1))
     assert sorted(path.name for path in tmp_path.iterdir()) == [other.name, "set"]
-
-
-def test_that_a_folder_that_cannot_be_made_is_one_sentence(tmp_path: Path, make_dataset) -> None:
-    (tmp_path / "file").write_text("x")
-    with pytest.raises(DatasetError, match="cannot be written"):
-        write_dataset(tmp_path / "file" / "set", make_dataset(1))
-    with pytest.raises(DatasetError, match="cannot be written"):
-        write_dataset(tmp_path / ("x" * 300), make_dataset(1))

@@ -1,7 +1,7 @@
 """The lines of the verification against bodies whose motion is known in closed form."""
 
 import json
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -16,22 +16,16 @@ from regolith_studio.dem import engines
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.lifting_cylinder import SubstepSettings
-from regolith_studio.dem.verification import MeasuredLine, certificate, heaps, scenes
+from regolith_studio.dem.verification import MeasuredLine, heaps, scenes
 from regolith_studio.dem.verification.bodies import N_FACETS, polyhedra_dataset
 from regolith_studio.dem.verification.certificate import (
-    MEASUREMENTS,
-    QUICK,
     Certificate,
-    Turn,
     certificate_document,
-    measure_lines,
     verifiable_engine,
 )
 from regolith_studio.dem.verification.heaps import CLOSE, LOOSE, HeapRuns, paired_line, platonic_solids
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs import repose_jobs
-from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.steps import result_of
 
 
@@ -177,13 +171,6 @@ def test_that_only_an_engine_whose_bodies_can_be_placed_is_verified() -> None:
         verifiable_engine("nothing")
 
 
-def test_that_a_certificate_names_the_lines_that_fail() -> None:
-    good, bad = (MeasuredLine("rest", "", 0.0, "d", "", passed) for passed in (True, False))
-    certificate = Certificate("rapier", "1", (good, bad))
-    assert not certificate.passed
-    assert certificate.failed == (bad,)
-
-
 def test_that_an_angle_comes_with_the_lines_that_its_engine_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     engine = ENGINES["rapier"]
     version = engine.find().version
@@ -197,61 +184,6 @@ def test_that_an_angle_comes_with_the_lines_that_its_engine_fails(monkeypatch: p
     assert engines.engine_notes(engine) == [f"Rapier was verified in version 0.1, not in {version}."]
     del known["rapier"]
     assert engines.engine_notes(engine) == ["Rapier was not verified."]
-
-
-def pair_of_seed(key: str, seed: int) -> Generator[Progress, None, tuple[float, float]]:
-    """In the place of two heaps, in another process."""
-    yield Progress(0, 1)
-    return (30.0, 30.0 + seed) if key == "rapier" else (0.0, 0.0)
-
-
-def lines_of_pairs(runs: HeapRuns, _keys: object) -> Generator[tuple[str, None], None, Any]:
-    """The pairs that other processes compute, as the certificate."""
-    assert runs.further_pairs is not None
-    further = runs.further_pairs()
-    while True:
-        try:
-            next(further)
-        except StopIteration as end:
-            return end.value
-        yield "half_step", None
-
-
-def test_that_the_other_seeds_of_the_half_step_run_in_processes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(repose_jobs, "cores", lambda: 2)
-    monkeypatch.setattr(repose_jobs, "_step_pair", pair_of_seed)
-    monkeypatch.setattr(repose_jobs, "measure_lines", lines_of_pairs)
-    assert result_of(repose_jobs.verify_engine("rapier")) == [(30.0, 30.0 + seed) for seed in (1, 2, 3, 4)]
-
-
-def lines_measured(_runs: HeapRuns, keys: tuple[str, ...]) -> Iterator[Turn]:
-    """A turn during each line, and the line."""
-    for key in keys:
-        yield key, None
-        yield key, MeasuredLine(key, "", 0.0, "", "", True)
-
-
-def test_that_lines_come_as_they_are_done_with_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(repose_jobs, "cores", lambda: 1)
-    monkeypatch.setattr(repose_jobs, "measure_lines", lines_measured)
-    _started, *steps = repose_jobs.verify_engine("rapier", quick=True)
-    assert [step.value.key for step in steps if isinstance(step, Partial)] == list(QUICK)
-    done = [step.done for step in steps if isinstance(step, Progress)]
-    assert done == [0, *np.repeat(range(1, len(QUICK)), 2), len(QUICK)]
-
-
-def test_that_measured_lines_make_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
-    def measurement(_of: Any) -> Generator[None, None, MeasuredLine]:
-        yield None
-        return line
-
-    line = MeasuredLine("fall", "", 0.0, "m g d", "", True)
-    monkeypatch.setattr(certificate, "SCENES", {"fall": measurement})
-    steps = measure_lines(HeapRuns(verifiable_engine("rapier")), ("fall",))
-    assert [next(steps), next(steps)] == [("fall", None), ("fall", line)]
-    made = result_of(steps)
-    assert made.lines == (line,)
-    assert made.left_out == tuple(key for key in MEASUREMENTS if key != "fall")
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-9])

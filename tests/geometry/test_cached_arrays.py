@@ -23,12 +23,6 @@ def spheres(count):
     return [Mesh(base.vertices * (1 + number), base.faces) for number in range(count)]
 
 
-def test_that_what_is_asked_for_twice_is_computed_once():
-    (sphere,) = spheres(1)
-    assert sphere.triangles is sphere.triangles
-    assert sphere.hull is sphere.hull
-
-
 @pytest.mark.usefixtures("a_megabyte")
 def test_that_many_meshes_hold_no_more_than_there_is_room_for():
     many = spheres(40)
@@ -40,23 +34,6 @@ def test_that_many_meshes_hold_no_more_than_there_is_room_for():
     assert "triangles" not in vars(many[0])
 
 
-@pytest.mark.usefixtures("a_megabyte")
-def test_that_what_was_forgotten_is_the_same_when_it_is_asked_for_again():
-    many = spheres(20)
-    before = [sphere.face_areas.copy() for sphere in many]
-    hulls = [sphere.hull.volume for sphere in many]
-    for sphere, areas, volume in zip(many, before, hulls, strict=True):
-        np.testing.assert_array_equal(sphere.face_areas, areas)
-        assert sphere.hull.volume == volume
-
-
-def test_that_one_mesh_larger_than_the_room_keeps_its_own(monkeypatch):
-    monkeypatch.setattr(cached_arrays, "MAX_CACHED_BYTES", 1)
-    (sphere,) = spheres(1)
-    assert sphere.face_area_vectors is sphere.face_area_vectors
-    assert "triangles" in vars(sphere)
-
-
 def test_that_nothing_keeps_a_mesh_alive():
     (sphere,) = spheres(1)
     sphere.hull.triangles  # noqa: B018
@@ -65,12 +42,6 @@ def test_that_nothing_keeps_a_mesh_alive():
     gc.collect()
     assert known() is None
     assert hull() is None
-
-
-def test_that_meshes_on_the_same_triangles_share_them():
-    first, second = spheres(2)
-    assert first.faces is second.faces is icosphere(3).faces
-    assert first.moved(shift=(1, 2, 3)).faces is first.faces
 
 
 def test_that_a_callers_array_is_neither_locked_nor_shared():

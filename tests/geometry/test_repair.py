@@ -8,11 +8,11 @@ import pytest
 from scipy.ndimage import generate_binary_structure, label
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.hole_filling import fill_holes, hole_boundaries, least_area_triangles
+from regolith_studio.geometry.hole_filling import least_area_triangles
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.repair import repair, wedge_neighbours
+from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.geometry.topology import edge_table, merged_vertices, neighbours
+from regolith_studio.geometry.topology import merged_vertices
 from tests.filling import filled
 from tests.geometry.solids import CORNERS, CUBE, FACES, joined, turned_round
 
@@ -104,12 +104,6 @@ def test_that_a_sound_mesh_comes_back_itself():
     assert result.health_before is result.health_after
     assert result.given is None
     assert result.as_dict()["filled_area"] == 0.0
-
-
-def test_that_two_boxes_with_a_wall_between_them_become_one_box():
-    result = repair(boxes((0, 0, 0), (1, 0, 0)))
-    assert result.mesh.volume == pytest.approx(2.0)
-    assert result.mesh.surface_area == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize("place", [(1, 1, 0), (1, 1, 1)], ids=["an edge", "a corner"])
@@ -262,22 +256,6 @@ def test_that_a_tangle_is_refused_before_it_is_closed():
         repair(Mesh(rng.normal(size=(300, 3)), rng.integers(0, 300, (20_000, 3))))
 
 
-def test_that_a_book_of_many_pages_pairs_them_in_the_order_of_their_angles():
-    """2,000 pages of alternating direction about one edge: 1,000 wedges, each of two neighbours."""
-    angle = 2 * np.pi * np.arange(2000) / 2000
-    pages = np.column_stack([np.cos(angle), np.sin(angle), np.full(2000, 0.5)])
-    order = np.random.default_rng(0).permutation(2000)
-    start = np.where(np.arange(2000)[order] % 2, 0, 1)
-    faces = np.column_stack([start, 1 - start, np.arange(2000) + 2])
-    vertices = np.concatenate([[[0, 0, 0], [0, 0, 1]], pages[order]])
-    table = edge_table(faces, len(vertices))
-    across = wedge_neighbours(vertices, faces, table, neighbours(table))
-    pairs = np.flatnonzero(across >= 0)
-    steps = (order[pairs // 3] - order[across[pairs] // 3]) % 2000
-    assert len(pairs) == 2000
-    assert set(steps.tolist()) == {1, 1999}
-
-
 def test_that_a_moebius_strip_is_refused():
     n = 30
     angle = 2 * np.pi * np.arange(n) / n
@@ -339,18 +317,3 @@ def test_that_a_rim_in_space_gets_the_least_of_all_triangulations(n):
     found, closed = filled(least_area_triangles, arguments, nothing)
     assert closed
     assert area(points, found) == pytest.approx(expected)
-
-
-def test_that_barred_chords_are_not_used():
-    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
-    barred = np.zeros((4, 4), dtype=np.bool_)
-    barred[0, 2] = True
-    triangles, _ = filled(least_area_triangles, (square, barred), np.zeros((2, 3), dtype=np.int64))
-    assert {tuple(sorted(face)) for face in triangles.tolist()} == {(0, 1, 3), (1, 2, 3)}
-    barred[1, 3] = True
-    assert not least_area_triangles(square, barred, triangles)
-
-
-def test_that_each_hole_has_its_own_rim_even_where_two_touch():
-    assert sorted(len(rim) for rim in hole_boundaries(without(CUBE, 0, 2).faces, 8)) == [3, 3]
-    assert fill_holes(CORNERS, without(CUBE, 0, 2).faces).count == 2

@@ -42,13 +42,6 @@ def test_that_an_interruption_leaves_what_was_there(tmp_path: Path) -> None:
     assert (tmp_path / "place" / "half.txt").read_text() == "whole"
 
 
-def test_that_other_files_of_the_folder_are_left_alone(tmp_path: Path) -> None:
-    (tmp_path / "thesis.txt").write_text("important")
-    with staged_folder(tmp_path, "test") as stage:
-        (stage / "a.txt").write_text("a")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.txt", "test.sha256", "thesis.txt"]
-
-
 def write(folder: Path, **files: str) -> None:
     with staged_folder(folder, "test") as stage:
         for name, text in files.items():
@@ -129,14 +122,6 @@ def test_that_files_that_belong_together_are_all_replaced_or_none(tmp_path: Path
     assert (model.read_text(), project.read_text()) == ("new", "new")
 
 
-def test_that_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("in the way")
-    with pytest.raises(FileError, match="cannot be written"), staged_folder(tmp_path / "file" / "x", "test"):
-        pass
-    with pytest.raises(FileError, match="cannot be written"):
-        write_bytes(tmp_path / "file" / "x.json", b"")
-
-
 @pytest.mark.skipif(os.name == "nt", reason="permissions are a matter of POSIX")
 def test_that_files_get_the_permissions_that_the_user_gives_to_all_files(tmp_path: Path) -> None:
     (tmp_path / "plain").write_text("")
@@ -204,10 +189,3 @@ def test_that_a_folder_that_another_process_writes_into_is_removed_at_the_second
     atomic.remove_quietly(folder)
     assert len(tries) == 2
     assert not folder.exists()
-
-
-def test_that_a_file_in_a_stage_that_is_gone_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(
-        FileError, match=r"The file .*gone/a\.stl cannot be written \(there is no such file\)"
-    ):
-        atomic.write_in_stage(tmp_path / "gone", "a.stl", b"")

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.settings import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.mesh import Mesh
@@ -75,23 +74,6 @@ def test_that_partial_results_grow_to_the_result() -> None:
     assert parts[-1] == seen
 
 
-def test_that_what_is_copied_grows_as_the_number_of_particles(monkeypatch: pytest.MonkeyPatch) -> None:
-    known = measure_particle(Particle("a", GRAIN))
-    monkeypatch.setattr("regolith_studio.jobs.particle_jobs.measure_particle", lambda *_: known)
-    for count in (500, 5000):
-        received, seen = played(measure_particles([Particle("a", GRAIN)] * count))
-        copied = sum(len(step.value) for step in received if isinstance(step, Partial))
-        assert copied < 10 * count
-        assert len(seen) == count
-
-
-def test_that_a_coarsening_shows_a_polyhedron_at_its_first_step() -> None:
-    received, coarsened = played(coarsen_one(GRAIN, ORDER))
-    first = next(step.value for step in received if isinstance(step, Partial))
-    assert first.polyhedron is not None
-    assert coarsened.n_facets == 20
-
-
 def test_that_a_sample_goes_on_after_a_particle_that_fails() -> None:
     grains = [Particle("flat", FLAT), Particle("good", GRAIN)]
     _, (flat, good) = played(coarsen_sample(grains, ORDER))
@@ -117,10 +99,6 @@ def test_that_a_sample_without_a_single_polyhedron_is_no_dataset(tmp_path: Path)
     with pytest.raises(DatasetError, match="No particle could be coarsened"):
         played(build_dataset_folder([Particle("flat", FLAT)], ORDER, tmp_path / "d", DatasetOptions()))
     assert not (tmp_path / "d").exists()
-
-
-def test_that_an_order_asks_for_the_method_of_the_coarsening_itself() -> None:
-    assert CoarseningRequest(LossWeights.from_preset("all")).method == DEFAULT_METHOD
 
 
 def test_that_a_particle_carries_the_warnings_of_the_fit_at_the_degree_that_is_coarsened() -> None:

@@ -24,14 +24,13 @@ from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_sample
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import measure_particle
-from regolith_studio.readers.particles import read_mesh, read_particles
+from regolith_studio.readers.particles import read_particles
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.scan_groups import extract_groups, group_names
 from regolith_studio.session.outputs.coarsening import write_coarsening
 from regolith_studio.session.outputs.measurements import FittedSample, write_fits
 from regolith_studio.session.outputs.particles import write_particle
-from regolith_studio.session.project import Project
-from regolith_studio.session.recipe import Recipe, recipe_of
+from regolith_studio.session.recipe import recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.steps import result_of
 from tests.dataset.example import entry
@@ -138,18 +137,6 @@ def test_that_weights_find_the_meshes_of_names_that_are_no_file_names(tmp_path: 
     (folder / "=1+1.stl").write_bytes(stl_bytes(GRAIN.triangles, "test"))
     (folder / "particles.csv").write_text("name,weight\na/b,2.5\n'=1+1,3.5\n")
     assert {each.name: each.weight for each in read_particles([folder])} == {"=1+1": 3.5, "a_b": 2.5}
-
-
-def test_that_a_project_is_written_where_it_was_named(output: Path) -> None:
-    output.mkdir()
-    recipe = Recipe.model_validate({"particles": [{"name": "bead-1", "called": "../../escaped"}]})
-    Project(recipe=recipe, selected="../../escaped", page="../../escaped").save(output / "p.regolith")
-    assert [path.name for path in output.iterdir()] == ["p.regolith"]
-
-
-def test_that_a_mesh_keeps_the_name_of_its_file(tmp_path: Path) -> None:
-    (tmp_path / "<b>&.stl").write_bytes(stl_bytes(GRAIN.triangles, "test"))
-    assert read_mesh(tmp_path / "<b>&.stl").name == "<b>&"
 
 
 def test_that_an_input_whose_name_no_file_can_have_is_one_sentence(output: Path) -> None:

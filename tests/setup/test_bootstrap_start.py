@@ -3,7 +3,6 @@
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -23,16 +22,6 @@ def test_that_a_local_display_must_answer_and_a_distant_one_is_believed(
 ) -> None:
     monkeypatch.setenv("DISPLAY", display)
     assert bootstrap.display_answers() is answers
-
-
-@linux
-def test_that_a_listening_server_is_a_display(bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    number = 50_000 + os.getpid() % 10_000
-    with socket.socket(socket.AF_UNIX) as server:
-        server.bind(f"\0/tmp/.X11-unix/X{number}")
-        server.listen()
-        monkeypatch.setenv("DISPLAY", f":{number}.0")
-        assert bootstrap.display_answers()
 
 
 @linux

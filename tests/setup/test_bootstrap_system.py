@@ -60,15 +60,6 @@ def test_that_macos_and_windows_need_no_packages_and_have_a_display(
     assert bootstrap.display_answers()
 
 
-def test_that_newer_releases_names_are_used_where_they_are_known(bootstrap: ModuleType) -> None:
-    wanted = ["libglib2.0-0", "libgl1", "no-such-package"]
-    assert bootstrap.names_here(wanted, {"libglib2.0-0t64", "libgl1", "libgl1t64"}) == [
-        "libglib2.0-0t64",
-        "libgl1",
-        "no-such-package",
-    ]
-
-
 def recorded_apt(bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, known: list[set[str]]) -> list[str]:
     """Replace apt by a recorder that knows one set of names after the other."""
     calls: list[str] = []
@@ -80,14 +71,6 @@ def recorded_apt(bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, known: 
 
     monkeypatch.setattr(bootstrap, "apt_get", record)
     return calls
-
-
-def test_that_lists_are_not_fetched_if_every_name_is_known(
-    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    calls = recorded_apt(bootstrap, monkeypatch, [{"libgl1"}])
-    assert bootstrap.install_packages(["libgl1"], [])
-    assert calls == ["install libgl1"]
 
 
 def test_that_lists_are_fetched_on_a_machine_that_has_none(

@@ -2,15 +2,12 @@
 
 import csv
 import json
-import pickle
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 
 import numpy as np
 import pytest
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.describe import describe, pooled_rmsre, rmsre
+from regolith_studio.descriptors.describe import describe, rmsre
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
@@ -22,7 +19,6 @@ from regolith_studio.harmonics.synthesis import reconstruct
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.studies.figures.degrees import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (
-    BOX_NOTE,
     LmaxStudy,
     enough_degrees,
     lmax_errors,
@@ -80,11 +76,6 @@ def test_that_errors_are_those_of_meshes_so_fine_that_finer_ones_change_nothing(
         np.testing.assert_allclose(errors, [found[key] / wanted[key] - 1 for key in keys], atol=1e-3)
 
 
-def test_that_the_volume_error_falls_with_l_max(study):
-    volume = study.rmsre()[:, study.keys.index("volume")]
-    assert volume[0] > 5 * volume[1] > 5 * volume[2]
-
-
 def test_that_rmsre_is_the_root_of_the_mean_square_over_those_that_have_a_value(made_up):
     np.testing.assert_allclose(made_up.rmsre("x")[:, 0], [np.sqrt((0.09 + 0.16) / 2), 0.03])
     np.testing.assert_allclose(made_up.rmsre()[0, 0], np.sqrt((0.09 + 0.16 + 0.02) / 4))
@@ -106,11 +97,6 @@ def test_that_the_smallest_l_max_is_the_first_with_all_errors_below(made_up, stu
     lines = enough_degrees(made_up, 0.15).splitlines()
     assert lines[1] == "l_max = 2 is the smallest with every RMSRE of y below 15 %."
     assert enough_degrees(made_up, 0.001).startswith("No l_max that was studied is enough with every RMSRE")
-
-
-def test_that_a_resample_counts_particles_as_often_as_its_weights_say():
-    errors = np.array([[[1.0]], [[3.0]]])
-    np.testing.assert_allclose(pooled_rmsre(errors, [[2, 0], [1, 1]]).ravel(), [1.0, np.sqrt(5.0)])
 
 
 def test_that_each_particle_is_told_of_with_the_study_so_far(particles):
@@ -137,20 +123,6 @@ def test_that_a_study_of_nothing_is_refused(particles):
             played(lmax_study(*arguments))
 
 
-@pytest.mark.slow
-def test_that_a_process_pool_gives_the_same_numbers(particles):
-    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
-        _, result = played(lmax_study(particles, (1, 4), mapper=pool.map))
-    wanted = [lmax_errors(particle.mesh, (1, 4)) for particle in particles]
-    np.testing.assert_array_equal(result.errors, wanted)
-
-
-def test_that_a_study_survives_pickling(study):
-    copy = pickle.loads(pickle.dumps(study))
-    np.testing.assert_array_equal(copy.errors, study.errors)
-    np.testing.assert_array_equal(copy.bands("long"), study.bands("long"))
-
-
 def test_that_the_tables_hold_a_row_for_each_group_degree_and_descriptor(study):
     table = rmsre_table(study)
     assert len(table.rows) == 2 * len(DEGREES) * len(LOSS_KEYS)
@@ -172,12 +144,6 @@ def test_that_tables_and_figures_are_written_and_readable(study, tmp_path):
     assert drawing.rstrip().endswith("</svg>")
     write_lmax_study(study, tmp_path / "again")
     assert (tmp_path / "again" / "lmax_rmsre.svg").read_text() == drawing
-
-
-def test_that_figure_and_table_say_why_diameters_step(study):
-    assert BOX_NOTE in rmsre_table(study).notes
-    caption = lmax_figure(study).get_supxlabel()
-    assert caption.split() == BOX_NOTE.split()
 
 
 @pytest.mark.slow

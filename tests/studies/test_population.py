@@ -58,14 +58,6 @@ def small() -> tuple[list[StudyProgress], PopulationStudy]:
     return run(rough_sample(40), SMALL_MODELS, **SMALL)
 
 
-@pytest.mark.slow
-def test_that_progress_rises_to_the_end(small: tuple[list[StudyProgress], PopulationStudy]) -> None:
-    steps, _ = small
-    done = [step.done for step in steps]
-    assert done == sorted(done)
-    assert steps[-1].share == 1.0
-
-
 def test_that_every_table_has_a_row_for_each_case(
     small: tuple[list[StudyProgress], PopulationStudy],
 ) -> None:
@@ -123,19 +115,6 @@ def test_that_figures_show_every_model_in_a_colour_of_its_own(
             if label in {model.label for model in MODELS.values()}
         }
         assert len(colours) == len(MODELS)
-
-
-def test_that_as_many_are_drawn_as_were_held_out() -> None:
-    _, study = run(rough_sample(46), ["gaussian_field"], l_max=2, n_splits=1, n_repeats=1, level=1)
-    assert study.n_draws == 23
-
-
-def test_that_the_same_seed_gives_the_same_study() -> None:
-    options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 1, "level": 1}
-    one, two = (run(rough_sample(24), ["log_field"], seed=5, **options)[1].models[0] for _ in range(2))
-    np.testing.assert_array_equal(one.table, two.table)
-    np.testing.assert_array_equal(one.distances.energy, two.distances.energy)
-    np.testing.assert_array_equal(one.intervals.wasserstein, two.intervals.wasserstein)
 
 
 @pytest.mark.slow

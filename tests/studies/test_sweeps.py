@@ -26,7 +26,6 @@ from regolith_studio.studies.sweeps import (
     differences,
     pareto_front,
     parse_values,
-    sensitivity_table,
     significant,
     sufficient_facets,
     tradeoff_table,
@@ -162,11 +161,6 @@ def test_that_a_fall_that_may_be_chance_is_no_gain() -> None:
     assert sufficient_facets(made_up(errors)) == 8
     errors[:, 1, -1] = errors[:, 0, -1] - 0.004
     assert sufficient_facets(made_up(errors)) == 9
-
-
-def test_that_a_sensitivity_needs_a_change() -> None:
-    with pytest.raises(InputError, match="at least one changed weight"):
-        sensitivity_table(made_up(table_of((0.1, 0.1))))
 
 
 @pytest.mark.parametrize("key", SWEEPS)

@@ -7,20 +7,6 @@ import pytest
 from regolith_studio.ui.startup import open_window
 
 
-def test_that_the_polyhedron_follows_the_degree(shown, preferences, wait):
-    window = shown(open_window(views="image", preferences=preferences))
-    session = window.session
-    wait(lambda: session.results.coarsened is not None, 170.0)
-    for degree in (14, 8):
-        wait(lambda: not session.tasks, 60.0)
-        session.choose(l_max=degree)
-        wait(lambda degree=degree: _is_done(session.results, degree), 60.0)
-
-
-def _is_done(results, degree):
-    return results.surface_l_max == degree and results.coarsened is not None
-
-
 @pytest.mark.parametrize("method", ["quadric", "exact"])
 @pytest.mark.slow
 def test_that_polyhedra_are_seen_while_a_slider_never_rests(shown, preferences, wait, method):

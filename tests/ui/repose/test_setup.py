@@ -251,6 +251,7 @@ def test_that_the_card_says_that_a_dataset_is_being_built_and_stops_it(page, wai
         return DatasetBuildResult(dataset, read_dataset(dataset), ())
 
     monkeypatch.setattr(page_module, "build_dataset_folder", build)
+    monkeypatch.setattr(page._context.session._live, "follow", lambda *_: None)  # no fit, no polyhedron
     page._context.session.adopt([Particle("ball", icosphere(2).moved(scale=40.0))])
     page.make_dataset()
     assert page.angle.record.state is ResultState.RUNNING
