@@ -130,10 +130,12 @@ class ProjectFiles(QObject):
         self._opening: _Opening | None = None
         self._to_resume: Project | None = None
         self._restored = False
+        self._remaking = False
         self._changed = False
         self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS)
         self._timer.timeout.connect(self._follow_pages)
         self._timer.start()
+        pages.built.connect(self._note_page)
         for event in (session.events.choices, session.events.particles):
             event.connect(self._note_change)
         for connected, slot in self._reactions():
@@ -147,12 +149,27 @@ class ProjectFiles(QObject):
             (events.particles, self._go_on_later),
             (events.failed, self._note_failure),
             (events.tasks, self._follow_opening),
+            (events.tasks, self._end_remaking_later),
         )
 
     @property
     def modified(self) -> bool:
         """Whether a project is open and no longer what its file holds; not while it is being opened."""
-        return self.path is not None and self._saved is not None and self._state() != self._saved
+        saved = self._saved
+        return (
+            self.path is not None
+            and saved is not None
+            and self._lasting(self._state()) != self._lasting(saved)
+        )
+
+    def _lasting(self, state: Project) -> Project:
+        """What of a state can be unsaved: neither what is looked at, nor results that are made again."""
+        passing = MADE if self._remaking else ()
+        pages = {
+            page: {name: value for name, value in fields.items() if name not in passing}
+            for page, fields in state.pages.items()
+        }
+        return state.model_copy(update={"page": "", "selected": "", "pages": pages})
 
     def title(self) -> str:
         if self.path is None:
@@ -343,8 +360,32 @@ class ProjectFiles(QObject):
                 self._pages.widgets[key].resume(state)
         self._steps.restart()
         if self.path is not None and not self._restored:
-            self._saved = self._state()
+            self._saved, self._remaking = self._state(), True
+            self._end_remaking()
             self.changed.emit()
+
+    def _end_remaking_later(self) -> None:
+        if self._remaking:
+            QTimer.singleShot(0, self, self._end_remaking)  # what has just ended may start the next
+
+    def _end_remaking(self) -> None:
+        """Take the results of an opened project for saved ones, once all have been made again."""
+        if not self._remaking or self._session.tasks or self._saved is None:
+            return
+        now = self._state().pages
+        pages = {
+            page: fields | {name: now[page][name] for name in MADE if name in now.get(page, {})}
+            for page, fields in self._saved.pages.items()
+        }
+        self._saved, self._remaking = self._saved.model_copy(update={"pages": pages}), False
+        self.changed.emit()
+
+    def _note_page(self, key: str) -> None:
+        """Take the state of a page at its first visit for a saved one."""
+        if self._saved is None or key in self._saved.pages:
+            return
+        if state := self._pages.widgets[key].state():
+            self._saved = self._saved.model_copy(update={"pages": self._saved.pages | {key: state}})
 
     def _leave(self, opening: _Opening) -> None:
         """Give up the name of a project whose particles were not read: saving would lose what it names.

@@ -106,6 +106,12 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     window.menus.by_name["save_project"].trigger()
     assert not window.projects.modified
     assert window.windowTitle().startswith("work – ")
+    window.session.choose(selected="flat-2")
+    for key in ("explore", "dataset", "studies"):
+        window.go(key)
+    assert not window.projects.modified, "looking at other pages and particles changes nothing"
+    window.session.choose(selected="flat-1")
+    window.go("sample")
     window.session.choose(n_facets=30)
     assert window.projects.modified
     assert window.windowTitle().startswith("work * – ")
@@ -120,6 +126,25 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     assert window.pages.current == "sample"
     assert window.page.filter.text() == "flat"
     assert window.preferences.recent[0] == str(target)
+
+
+@pytest.mark.slow
+def test_that_results_which_a_project_makes_again_are_no_changes(window, wait, tmp_path):
+    """The representatives of a dataset, which the project does not hold, are found again."""
+    target = tmp_path / "work.regolith"
+    window.go("dataset").find_representatives()
+    wait(lambda: window.page.state()["made"] and not window.session.tasks, SECONDS)
+    assert window.projects._write(target)
+    window.page._survey = None
+    seen = []
+    window.projects.changed.connect(lambda: seen.append(window.projects.modified))
+    window.commands.open_paths([target])
+    wait(lambda: window.projects._remaking, SECONDS)
+    wait(lambda: not window.projects._remaking, SECONDS)
+    assert window.page.state()["made"]
+    assert not any(seen)
+    window.session.choose(n_facets=31)
+    assert window.projects.modified
 
 
 def test_that_what_another_window_has_saved_is_not_replaced_without_asking(bare, tmp_path, monkeypatch):
