@@ -16,7 +16,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import annotations, cameras, instancing, palette, plotter_setup, surfaces
-from regolith_studio.scene.cameras import CameraPose, framing_pose
+from regolith_studio.scene.cameras import CameraPose, Vector, framing_pose
 from regolith_studio.scene.shapes import NAMES, PARTICLE, SceneShape
 from regolith_studio.scene.surfaces import smooth_surface
 
@@ -231,8 +231,13 @@ def show_gallery(plotter: Any, measured: Sequence[Mesh], drawn: Sequence[Mesh]) 
         actor.prop.interpolation = "Phong"
 
 
-def gallery_pose(measured: Sequence[Mesh], drawn: Sequence[Mesh], aspect: float) -> CameraPose:
-    """The pose from the front that fills a picture of this width over height with both rows."""
+def gallery_pose(
+    measured: Sequence[Mesh], drawn: Sequence[Mesh], aspect: float, foot: float = 0.0
+) -> CameraPose:
+    """The pose from the front that fills a picture of this width over height with both rows.
+
+    ``foot``: share of the height that stays free below them, for the scale bar.
+    """
     pitch = _pitch([*measured, *drawn])
     columns = max(len(measured), len(drawn), 1)
     rows = [row for row, meshes in enumerate((measured, drawn)) if meshes] or [0]
@@ -240,7 +245,19 @@ def gallery_pose(measured: Sequence[Mesh], drawn: Sequence[Mesh], aspect: float)
     high = np.array([columns - 0.5, 0.5, -min(rows) + 0.5]) * pitch
     width, _, height = high - low
     pose = framing_pose(np.array([low, high]), "front", aspect)
-    return replace(pose, parallel_scale=float(max(height, width / max(aspect, 1e-3)) / 2))
+    scale = float(max(height / (1.0 - foot), width / max(aspect, 1e-3)) / 2)
+    down = np.array([0.0, 0.0, max(0.0, 2.0 * scale * foot - (scale - height / 2))])
+    return replace(
+        pose,
+        parallel_scale=scale,
+        position=_lowered(pose.position, down),
+        focal_point=_lowered(pose.focal_point, down),
+    )
+
+
+def _lowered(place: Vector, down: FloatArray) -> Vector:
+    x, y, z = np.asarray(place) - down
+    return float(x), float(y), float(z)
 
 
 def _pitch(meshes: Sequence[Mesh]) -> float:

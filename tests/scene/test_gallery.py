@@ -54,3 +54,14 @@ def test_that_all_particles_are_in_the_picture(aspect):
     assert pose.parallel_scale * 2 >= 2 * 2 * 1.1
     assert pose.parallel_scale * 2 * aspect >= 6 * 2 * 1.1
     assert np.asarray(pose.focal_point)[1] == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("aspect", [0.5, 1.0, 3.0])
+def test_that_the_foot_of_a_gallery_stays_free_for_the_scale_bar(aspect):
+    meshes = [ball(1.0)] * 6
+    pose = gallery_pose(meshes, meshes, aspect, 0.2)
+    height = 2 * pose.parallel_scale
+    lower_edge = pose.focal_point[2] - pose.parallel_scale
+    lowest = -2 * 1.12 - 1.0
+    assert lowest - lower_edge >= 0.2 * height - 1e-9
+    assert pose.focal_point[2] + pose.parallel_scale >= 1.0, "the upper row is whole"

@@ -476,6 +476,10 @@ class LiveShape(QWidget):
             self._framed = True
 
 
+BAR_LINES = 3.4
+"""Height of the scale bar with its text, from the lower edge of a view, in units of the font."""
+
+
 class ShapeGallery(QWidget):
     """Measured particles above drawn ones."""
 
@@ -505,4 +509,5 @@ class ShapeGallery(QWidget):
     def _frame(self) -> None:
         view = self.frame.view
         width, height = view.widget.width(), view.widget.height()
-        view.set_pose(gallery_pose(*self._shown, width / max(height, 1)))
+        foot = min(BAR_LINES * self.fontInfo().pixelSize() / max(height, 1), 0.5)
+        view.set_pose(gallery_pose(*self._shown, width / max(height, 1), foot))
