@@ -585,7 +585,7 @@
     </message>
     <message>
         <source>All descriptors and overlap</source>
-        <translation>Alle Deskriptoren und Überdeckung</translation>
+        <translation>Alle Deskriptoren, Überdeckung</translation>
     </message>
     <message>
         <source>All descriptors of all particles: sort, filter with words such as flat S&lt;0.8, choose several rows, and see them in the scatter plot. Export the table with units.</source>

@@ -25,6 +25,7 @@ from regolith_studio.ui.pages.explore.page import PictureDialog
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.project_files import may_close
 from regolith_studio.ui.startup import open_window
+from regolith_studio.ui.theme import choose_font_size
 from regolith_studio.ui.translation import tr
 from tests.ui.reading import cut_off, english_left, points_left
 
@@ -200,6 +201,21 @@ def assert_fits(wait):
         assert cut_off(root) == [], root
 
     return check
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_that_no_dialog_cuts_a_label_in_a_larger_font(opened, speaking, language, assert_fits):
+    speaking(language)
+    choose_font_size(150)
+    try:
+        for dialog in dialogs_of(opened()):
+            dialog.show()
+            assert_fits(dialog)
+            dialog.close()
+            dialog.deleteLater()
+    finally:
+        choose_font_size(None)
 
 
 @pytest.mark.parametrize("language", [pytest.param("en", marks=pytest.mark.slow), "de"])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from PySide6.QtCore import Qt, QUrl, Signal
+from PySide6.QtCore import QSize, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -37,7 +37,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.files import FolderDialog
 from regolith_studio.ui.layout import STRETCH, GrowingDialog, hbox, named, vbox
 from regolith_studio.ui.translation import Markup, tr, tr_count
-from regolith_studio.ui.widgets.fields import choice, whole_field
+from regolith_studio.ui.widgets.fields import choice, show_whole, whole_field
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import hint_label
 
@@ -200,7 +200,6 @@ class RunDialog(GrowingDialog):
         super().__init__(parent)
         self.setWindowTitle(title)
         self.setObjectName(f"{name}_dialog")
-        self.setMinimumWidth(600)
         self._page, self._running = page, False
         self._fields: tuple[QWidget, ...] = ()
         self.folder = PathField(f"{name}_folder", tr("Folder of the results"), folder=True)
@@ -221,6 +220,10 @@ class RunDialog(GrowingDialog):
         self.halt.clicked.connect(self.stopped.emit)
         self.results_button.clicked.connect(self._open_results)
         self.box.rejected.connect(self.close)
+
+    def sizeHint(self) -> QSize:
+        """No narrower than this: a minimum width would take the place of that of the fields."""
+        return super().sizeHint().expandedTo(QSize(600, 0))
 
     def value(self) -> Any:
         raise NotImplementedError
@@ -254,6 +257,7 @@ class RunDialog(GrowingDialog):
         self._fields = fields
         form.setVerticalSpacing(7)
         vbox(form, *below, STRETCH, self.state, self.bar, self.box, parent=self, margins=None)
+        show_whole(self)
         for hidden in (self.bar, self.halt, self.results_button):
             hidden.hide()
 

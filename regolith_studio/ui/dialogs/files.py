@@ -27,7 +27,7 @@ from regolith_studio.readers.settings import UNITS, unit_factor
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, named, vbox
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.fields import choice, decimal_field
+from regolith_studio.ui.widgets.fields import choice, decimal_field, show_whole
 from regolith_studio.ui.widgets.labels import hint_label, short_number
 
 SETTING = "on_opening"
@@ -138,6 +138,7 @@ class UnitDialog(GrowingDialog):
             parent=self,
             margins=None,
         )
+        show_whole(self)
         self.unit.currentIndexChanged.connect(self._show_voxel)
         self.unit.currentIndexChanged.connect(self._show_size)
         self.unit.activated.connect(self._take_unit)

@@ -77,6 +77,12 @@ class ElidedComboBox(QComboBox):
         painter.end()
 
 
+def show_whole(dialog: QWidget) -> None:
+    """Let a dialog be as wide as the longest labels of its combo boxes."""
+    for box in dialog.findChildren(ElidedComboBox):
+        box.prefers_whole = True
+
+
 class ElidedCheckBox(QCheckBox):
     """A check box that may be narrower than its label, which is elided."""
 

@@ -42,7 +42,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import inert, number_text, tr
 from regolith_studio.ui.views.image_view import make_view
 from regolith_studio.ui.views.view import CameraLink, ViewFrame
-from regolith_studio.ui.widgets.fields import StepPlayer, choice, decimal_field
+from regolith_studio.ui.widgets.fields import StepPlayer, choice, decimal_field, show_whole
 from regolith_studio.ui.widgets.labels import hint_label, short_number
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -84,6 +84,7 @@ class PositionsDialog(GrowingDialog):
                 form.addRow(label, field)
         buttons = dialog_buttons(self, QDialogButtonBox.StandardButton.Open)
         vbox(form, self.size_note, buttons, parent=self, margins=None)
+        show_whole(self)
         self.unit.currentIndexChanged.connect(self._show_size)
         self.columns.textChanged.connect(self._offer_diameter)
         low, high = HEAP_WIDTHS
