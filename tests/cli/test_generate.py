@@ -97,12 +97,6 @@ def test_that_a_mesh_of_the_sample_that_cannot_be_read_is_named_and_makes_the_ex
 
 
 @pytest.mark.slow
-def test_that_the_shipped_particles_are_a_sample_by_their_name(command, tmp_path: Path) -> None:
-    result = command("generate", "sample:all", "-n", 1, "-o", tmp_path / "g", "--l-max", 2, "--level", 1)
-    assert result.code == 0
-
-
-@pytest.mark.slow
 def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tmp_path: Path) -> None:
     quick = ("--model", "gaussian_field", "--l-max", 4, "--level", 2)
     for place, jobs in (("one", 1), ("two", 2)):

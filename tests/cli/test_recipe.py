@@ -65,12 +65,6 @@ def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
-def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
-    given_recipe = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
-    assert command("run", given_recipe, "-o", tmp_path / "out", "--seed", 77).code == 0
-    assert json.loads((tmp_path / "out" / "recipe.json").read_text())["seed"] == 77
-
-
 def test_that_a_bad_recipe_is_one_sentence(command, grains: Path, tmp_path: Path) -> None:
     for entries in ({"n_facets": 1}, {"lmax": 3}, {"inputs": ["nowhere.stl"]}):
         result = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
@@ -98,14 +92,6 @@ def test_that_runner_and_address_must_go_together(command, grains: Path, tmp_pat
         result = command("run", given_recipe, "-o", tmp_path / "out", *options)
         assert result.code == 2
         assert not (tmp_path / "out").exists()
-
-
-def test_that_a_run_is_resumed_on_the_command_line(command, grains: Path, tmp_path: Path) -> None:
-    given_recipe = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
-    first = command("run", given_recipe, "-o", tmp_path / "out", "--resume", "--chunk", 2, "--json")
-    again = command("run", given_recipe, "-o", tmp_path / "out", "--resume", "--json")
-    assert first.json["files"] == again.json["files"]
-    assert again.code == 0
 
 
 STANDING = {

@@ -65,21 +65,6 @@ def test_that_the_same_dataset_gives_the_same_bytes_and_so_does_the_one_read_bac
     assert contents(tmp_path / "a") == contents(tmp_path / "b") == contents(tmp_path / "c")
 
 
-def test_that_a_max_error_is_written_and_read_back(tmp_path, make_dataset) -> None:
-    """What was written before there was that choice stays the same bytes when it is written again."""
-    by_count = make_dataset()
-    asked = by_count.provenance.coarsening.model_copy(update={"max_error": 0.02})
-    by_error = replace(by_count, provenance=replace(by_count.provenance, coarsening=asked))
-    records = []
-    for name, dataset in (("count", by_count), ("error", by_error)):
-        folder = write_dataset(tmp_path / name, dataset)
-        assert read_dataset(folder).provenance == dataset.provenance
-        document = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
-        records.append(document["metadata"]["coarsening"])
-    assert records[1] == records[0] | {"max_error": 0.02}
-    assert records[0]["max_error"] is None
-
-
 def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) -> None:
     folder = write_dataset(tmp_path / "set", make_dataset())
     assert list(contents(folder)) == [
@@ -135,14 +120,6 @@ def test_that_an_edge_shorter_than_float32_resolves_is_no_problem(tmp_path: Path
     particle = Particle("octahedron", solid.mesh)
     folder = write_dataset(tmp_path / "set", build_dataset([(particle, Coarse(solid, np.zeros(3)))]))
     assert not validate_dataset(folder)
-
-
-def test_that_an_older_dataset_is_replaced_as_a_whole(tmp_path: Path, make_dataset) -> None:
-    write_dataset(tmp_path / "set", make_dataset(count=5))
-    write_dataset(tmp_path / "set", make_dataset(count=2, first=10))
-    assert len(read_dataset(tmp_path / "set")) == 2
-    assert validate_dataset(tmp_path / "set") == []
-    assert [p.name for p in tmp_path.iterdir()] == ["set"]
 
 
 def test_that_a_dataset_can_be_kept_from_being_replaced(tmp_path: Path, make_dataset) -> None:
@@ -264,8 +241,3 @@ def test_that_a_dataset_that_could_not_be_read_again_is_not_written(
     with pytest.raises(DatasetError, match="too large to be read"):
         write_stored(tmp_path / "set", shapes, 3, name="a set", provenance=STORY)
     assert not (tmp_path / "set").exists()
-
-
-def test_that_nothing_makes_no_dataset(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="at least one"):
-        write_stored(tmp_path / "set", list, 0, name="a set", provenance=STORY)

@@ -127,18 +127,6 @@ def test_that_another_checkout_or_date_has_code_of_its_own(tmp_path: Path) -> No
     assert kernels.kernel_sources(places[0]) != one
 
 
-def test_that_machine_code_is_kept_below_the_folder_that_the_user_has_set(cache_below: Path) -> None:
-    assert kernels._cache_folder(None).parent == cache_below  # type: ignore[union-attr]
-
-    @kernels.kernel
-    def one() -> int:
-        return 1
-
-    assert one() == 1
-    assert list(cache_below.rglob("*.nbc"))
-    assert str(cache_below) == numba.config.CACHE_DIR
-
-
 def test_that_folders_of_other_versions_go_when_nobody_has_used_them_for_long(cache_below: Path) -> None:
     old, other, strange = (cache_below / name for name in ("core-" + "a" * 16, "core-" + "b" * 16, "mine"))
     for folder in (old, other, strange):

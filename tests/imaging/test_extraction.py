@@ -15,7 +15,6 @@ from regolith_studio.imaging.extraction import (
     extract_particles,
     extraction_steps,
     pieces_of_cut_grains,
-    voxel_diameter,
 )
 from regolith_studio.imaging.label_table import contact_areas, label_table
 from regolith_studio.imaging.settings import ExtractionSettings
@@ -112,13 +111,6 @@ def test_that_border_and_small_labels_are_left_out_and_counted() -> None:
     assert all(particle.mesh.volume > 0 for particle in everything.particles)
 
 
-def test_that_coarse_particles_carry_a_warning() -> None:
-    array = np.zeros((20, 20, 20), dtype=np.uint8)
-    array[5:13, 5:13, 5:13] = 1
-    (particle,) = extract_particles(Volume(array, (1.0, 1.0, 1.0), "labels", "t")).particles
-    assert any("9.9 voxels in diameter" in note for note in particle.notes)
-
-
 def test_that_separate_parts_and_closed_pores_are_mended_and_said() -> None:
     array = np.zeros((30, 30, 30), dtype=np.uint8)
     array[3:18, 3:18, 3:18] = 1
@@ -156,15 +148,6 @@ def test_that_the_warning_of_few_voxels_goes_by_the_thinnest_extent(
     notes = " ".join(found.particle.notes)
     assert ("voxels in diameter where it is thinnest" in notes) == bool(notes) == thin
     assert not thin or float(notes.split()[1]) == pytest.approx(min(edges), abs=0.3)
-
-
-def test_that_extraction_tells_how_far_it_is() -> None:
-    array = np.zeros((30, 30, 30), dtype=np.uint8)
-    array[2:14, 2:14, 2:14] = 1
-    array[16:28, 16:28, 16:28] = 2
-    story = list(extraction_steps(Volume(array, (1.0, 1.0, 1.0), "labels", "t")))
-    assert [(step.done, step.total, step.made.label) for step in story] == [(1, 2, 1), (2, 2, 2)]
-    assert [step.made.n_voxels for step in story] == [12**3, 12**3]
 
 
 @pytest.mark.parametrize(
@@ -239,10 +222,6 @@ def test_that_weighted_grains_have_the_mean_volume_of_all() -> None:
     expected = np.mean(truth)
     assert np.mean(volumes) < 0.7 * expected
     assert np.average(volumes, weights=weights) == pytest.approx(expected, rel=0.04)
-
-
-def test_that_voxel_diameter_is_that_of_a_ball() -> None:
-    assert voxel_diameter(1000) == pytest.approx(2 * (3000 / 4 / np.pi) ** (1 / 3))
 
 
 @pytest.mark.slow

@@ -272,7 +272,3 @@ def test_that_depths_are_those_of_scipy_where_they_matter(case: int) -> None:
     mask = masks()[case]
     expected = np.minimum(ndimage.distance_transform_edt(mask), MAX_DEPTH)
     assert depth(mask) == pytest.approx(expected, abs=1e-6)
-
-
-def test_that_a_mask_without_an_outside_is_deep_everywhere() -> None:
-    assert (depth(np.ones((3, 4, 5), dtype=bool)) == MAX_DEPTH).all()

@@ -87,6 +87,10 @@ BETWEEN = {
     "a core of 38 % twice as bright",
     "a dim core of 9 %",
     "a dim core of 38 %",
+    "a core of three times the brightness 2.6 voxels below",
+    "a dim core 2.5 voxels below the surface",
+    "cupping",
+    "one grey value",
 }
 """Milder than another of their kind."""
 

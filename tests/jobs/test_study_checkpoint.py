@@ -2,7 +2,6 @@
 
 import json
 import sqlite3
-from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -59,18 +58,6 @@ def test_that_what_was_known_is_not_worked_out_again_and_is_the_same_to_the_bit(
         else:
             assert answer == given
     assert not (tmp_path / "out").exists()  # there was nothing else in it
-
-
-def test_that_a_waiting_mapper_may_say_so_between_answers(tmp_path: Path) -> None:
-    def waiting(function: Callable[[Any], Any], items: Any) -> Iterator[Any]:
-        for item in items:
-            yield None
-            yield function(item)
-
-    with StudyCheckpoint(tmp_path / "out" / "journal" / "study.sqlite") as answers:
-        answers.open("counting", 1, "inputs")
-        found = list(answers.wrap(waiting)(str, [1, 2]))
-    assert found == [None, "1", None, "2"]
 
 
 def test_that_an_answer_that_was_damaged_is_worked_out_again(tmp_path: Path) -> None:

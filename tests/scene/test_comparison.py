@@ -6,7 +6,6 @@ import pyvista as pv
 
 from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.geometry.ray_casting import radial_hits
-from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import clipping, comparison, facets, plotter_setup, surfaces
 from regolith_studio.scene.cameras import Projection, apply_pose, framing_pose, pose_of
 from regolith_studio.scene.clipping import SectionPlane
@@ -216,12 +215,6 @@ def test_that_the_number_of_a_slanted_facet_is_read_whole(plotter, cube):
     assert ink("isometric") == pytest.approx(straight, rel=0.2)
 
 
-def test_that_a_polyhedron_is_a_shape_where_its_centre_says(cube):
-    shape = SceneShape(POLYHEDRON, cube, np.array([5.0, 0.0, 0.0]))
-    assert np.allclose(shape.mesh.bounds.mean(axis=0), [5.0, 0.0, 0.0])
-    assert shape.mesh.volume == pytest.approx(64000.0)
-
-
 def test_that_the_pose_of_a_plotter_is_what_the_divider_follows(plotter, divider, cube):
     surfaces.show_polyhedron(plotter, cube)
     apply_pose(plotter, framing_pose(cube.vertices, "right"))
@@ -231,10 +224,3 @@ def test_that_the_pose_of_a_plotter_is_what_the_divider_follows(plotter, divider
     sight = Projection(pose_of(plotter), SIZE, SIZE)
     assert np.allclose(divider.right.GetNormal(), sight.axes[0])
     assert sight.seen(divider.right.GetOrigin())[0, 0] == pytest.approx(SIZE / 4)
-
-
-def test_that_the_same_actor_takes_the_colours_of_another_body(plotter, ball):
-    show_other(plotter, SceneShape(FIT, ball), False)
-    one = plotter.actors[OTHER + surfaces.SURFACE].prop.color
-    show_other(plotter, SceneShape(PARTICLE, icosphere(1)), False)
-    assert plotter.actors[OTHER + surfaces.SURFACE].prop.color != one

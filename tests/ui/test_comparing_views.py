@@ -8,12 +8,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.cross_section import cross_section
-from regolith_studio.jobs.events import Job
 from regolith_studio.scene import clipping, facets
 from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.comparison import OTHER
-from regolith_studio.scene.surfaces import OUTLINE, SURFACE
-from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.scene.surfaces import SURFACE
 from regolith_studio.ui.widgets.labels import grouped_number
 
 
@@ -88,17 +86,6 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert actor(window, "fit", clipping.CAP) is None
     assert panel.plot.is_empty()
     assert window.page.plots.left.currentIndex() == 0, "what was in front before is in front again"
-
-
-@pytest.mark.slow
-def test_that_the_fit_says_its_size_again_when_the_distances_go(window, wait):
-    frame = window.page.three_views.frames["fit"]
-    before = frame.detail.text()
-    assert before.startswith("121 coefficients")
-    switch(window, "heat")
-    wait(lambda: frame.detail.text().startswith("at most"))
-    switch(window, "heat")
-    assert frame.detail.text() == before
 
 
 @pytest.mark.slow
@@ -201,25 +188,3 @@ def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(w
     assert bare.pixelColor(5, bare.height() // 2).alpha() == 0
     inked = [bare.pixelColor(x, y).alpha() for x in range(4, 120) for y in range(4, 22)]
     assert max(inked) == 255  # the title
-
-
-@pytest.mark.slow
-def test_that_another_theme_measures_no_distances_again(window, wait, settled, monkeypatch):
-    asked = []
-
-    def counted(function, *arguments):
-        asked.append(function)
-        return Job(function, *arguments)
-
-    monkeypatch.setattr("regolith_studio.ui.views.three_views.Job", counted)
-    switch(window, "heat")
-    wait(lambda: len(asked) == 1)
-    settled(window)
-    for theme in (DARK, LIGHT):
-        window.page.three_views.set_theme(theme)
-        edges = actor(window, "polyhedron", OUTLINE).prop.color
-        assert edges.hex_rgb == theme.surroundings.outline
-    assert len(asked) == 1
-    window.session.choose(l_max=4)
-    wait(lambda: len(asked) == 2)
-    switch(window, "heat")

@@ -17,7 +17,6 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit
 from regolith_studio.io.triangles import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
-from regolith_studio.session import project
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.session import Session
@@ -171,20 +170,6 @@ def test_that_a_project_whose_files_have_moved_is_not_open_and_loses_nothing(
     wait(lambda: projects._saved is not None)
     assert [each.id for each in window.session.particles] == ["grain"]
     assert projects.path == moved
-
-
-def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypatch):
-    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
-    seen, write = [], project.write_files
-
-    def watched(contents):
-        write(contents)
-        (path,) = contents
-        seen.append(path.with_name(f"{path.name}.lock").exists())
-
-    monkeypatch.setattr(project, "write_files", watched)
-    window.projects._autosave()
-    assert seen == [True]
 
 
 def _holds(folder, n_facets):
