@@ -4,7 +4,6 @@ import json
 from dataclasses import dataclass
 from typing import Annotated
 
-import pytest
 import typer
 from typer.testing import CliRunner
 
@@ -76,10 +75,3 @@ def test_that_a_wrong_value_of_a_group_is_bad_use():
     done = run(measure, "--number", "many", "a.stl")
     assert done.exit_code == 2
     assert "--number" in done.output
-
-
-def test_that_two_options_of_one_name_are_a_mistake_of_the_programmer():
-    def twice(*, work: Work, unit: Unit = "um") -> None: ...
-
-    with pytest.raises(ValueError, match="duplicate parameter name: 'unit'"):
-        with_dataclass_options(twice)

@@ -32,11 +32,6 @@ def test_that_the_unit_scales_lengths(command, grains: Path) -> None:
     assert milli["sphericity"] == pytest.approx(micro["sphericity"])
 
 
-def test_that_a_folder_gives_one_entry_a_mesh_in_the_order_of_names(command, grains: Path) -> None:
-    result = command("describe", grains, "--json")
-    assert [entry["name"] for entry in result.json] == ["grain-a", "grain-b", "grain-c"]
-
-
 def test_that_a_table_names_particles_and_descriptors(command, grains: Path) -> None:
     result = command("describe", grains)
     assert result.code == 0

@@ -96,12 +96,6 @@ def test_that_full_stiffness_needs_twenty_million_steps_a_second() -> None:
     assert 1 / (0.2 * rayleigh_time(250e-6, 3075, 30e9, 0.2)) == pytest.approx(20e6, rel=0.3)
 
 
-def test_that_the_consequences_are_sentences(boxes: Dataset) -> None:
-    report = scaling_report(prepare(boxes, ReposeCase(n_particles=300)))
-    assert all(sentence.endswith(".") for sentence in report.sentences)
-    assert any("Fewer than 1,000 particles" in sentence for sentence in report.sentences)
-
-
 def test_that_a_cylinder_too_narrow_or_too_low_is_refused(boxes: Dataset) -> None:
     with pytest.raises(InputError, match="wider cylinder"):
         prepare(boxes, ReposeCase(n_particles=20))

@@ -5,8 +5,6 @@ import pytest
 import pyvista as pv
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.scene import cameras, instancing, plotter_setup
 
@@ -52,14 +50,6 @@ def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plott
     assert _seen(plotter, 6000) == pytest.approx([-corner, corner, -corner, corner], abs=120)
     instancing.show_heap(plotter, shapes, _at(np.zeros((1, 3))), spheres=True)
     assert _seen(plotter, 6000) == pytest.approx([-1e3, 1e3, -1e3, 1e3], abs=120)
-
-
-def test_that_the_next_moment_takes_the_same_actor(boxes: Dataset, plotter: pv.Plotter) -> None:
-    prepared = prepare(boxes, ReposeCase(n_particles=200))
-    instancing.show_heap(plotter, prepared.part_vertices, loose_column(prepared))
-    first = plotter.actors[instancing.HEAP]
-    instancing.show_heap(plotter, prepared.part_vertices, loose_column(prepared))
-    assert plotter.actors[instancing.HEAP] is first
 
 
 def test_that_the_cylinder_rises_and_goes(plotter: pv.Plotter) -> None:

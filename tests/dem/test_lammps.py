@@ -91,16 +91,6 @@ def test_that_the_material_is_softened_only_as_far_as_asked(boxes: Dataset) -> N
     assert fast.step == pytest.approx(2 * slow.step)
 
 
-def test_that_the_phases_follow_each_other(boxes: Dataset) -> None:
-    plan = schedule(prepare(boxes, SMALL), LammpsSettings(), 30.0)
-    phases = [plan.phase(step) for step in range(0, plan.steps, plan.picture)]
-    assert list(dict.fromkeys(phases)) == ["fill", "settle", "lift", "rest"]
-    lift = plan.steps_left("fill") + plan.steps_left("settle")
-    assert plan.rim(lift) == 0.0
-    assert plan.rim(lift + 100) == pytest.approx(100 * plan.step * plan.speed)
-    assert plan.rim(plan.steps) == float("inf")
-
-
 def test_that_a_restart_does_the_rest_of_the_test_in_steps_half_as_long(boxes: Dataset) -> None:
     prepared = prepare(boxes, SMALL)
     plan = schedule(prepared, LammpsSettings(), 30.0)

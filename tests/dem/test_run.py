@@ -304,16 +304,6 @@ def test_that_a_stopped_run_replaces_no_finished_one(
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
-def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["repose", "engines", "--json"]) == 0
-    rows = {row["key"]: row for row in json.loads(capsys.readouterr().out)}
-    assert rows["mujoco"]["version"]
-    assert not rows["mujoco"]["problem"]
-    assert all(row["missing"] for row in rows.values())
-    assert run(["repose", "engines"]) == 0
-    assert "polyhedra" in capsys.readouterr().out
-
-
 REFUSED = """
 run --contact static_friction=-1 | 2 | must lie between
 run --engine abacus | 2 | There is no engine 'abacus'; there are mujoco

@@ -4,15 +4,12 @@ import pickle
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, ShapeCache
+from regolith_studio.descriptors.catalogue import DEFAULT_KEYS
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
-from regolith_studio.geometry import mesh as meshes
-from regolith_studio.geometry.arrays import FloatArray
-from tests.geometry.solids import cuboid, random_polyhedron, rough_stone
+from tests.geometry.solids import cuboid, random_polyhedron
 
 PLANES = HalfSpaces(np.vstack([np.eye(3), -np.eye(3)]), [1.5, 1.0, 0.5, 1.5, 1.0, 0.5])
 
@@ -25,12 +22,6 @@ def test_that_only_what_is_asked_for_is_worked_out() -> None:
     some = describe(cuboid(3.0, 2.0, 1.0), keys=["surface_area", "volume"])
     assert dict(some) == pytest.approx({"volume": 6.0, "surface_area": 22.0})
     assert list(some) == ["volume", "surface_area"]
-
-
-def test_that_facts_are_lazy() -> None:
-    facts = ShapeCache(rough_stone(1))
-    CATALOGUE["sphericity"].compute(facts)
-    assert not {"hull", "box", "principal_moments"} & set(vars(facts))
 
 
 def test_that_a_polyhedron_and_its_mesh_are_described_alike() -> None:
@@ -83,21 +74,3 @@ def test_that_a_mesh_without_volume_is_refused_in_one_sentence(mesh: Mesh, words
         describe(mesh)
     assert str(refusal.value).endswith(".")
     assert "\n" not in str(refusal.value)
-
-
-def test_that_the_hull_of_a_mesh_that_is_too_large_to_be_kept_is_built_once(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Of millions of triangles it is the longest part."""
-    mesh = rough_stone(1)
-    sizes: list[int] = []
-    monkeypatch.setattr(meshes, "ALWAYS_CACHED_BYTES", 0)
-    monkeypatch.setattr(meshes, "MAX_CACHED_BYTES", 0)
-
-    def counted(points: FloatArray) -> ConvexHull:
-        sizes.append(len(points))
-        return ConvexHull(points)
-
-    monkeypatch.setattr(meshes, "ConvexHull", counted)
-    describe(mesh)
-    assert sizes.count(len(mesh.vertices)) == 1

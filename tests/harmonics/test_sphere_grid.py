@@ -9,7 +9,6 @@ from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtool
 from regolith_studio.harmonics.sphere_grid import (
     analyse_rings,
     harmonics,
-    sphere_grid,
     synthesise_rings,
 )
 from regolith_studio.harmonics.transform import call_shtools
@@ -79,15 +78,3 @@ def test_that_bits_do_not_depend_on_where_samples_lie(grid):
         again = np.empty(first.size + 8)[shift : shift + first.size]
         again[:] = first
         assert np.array_equal(synthesise_rings(again, zeros, 2 * degree + 1), back)
-
-
-def test_that_harmonics_are_orthonormal_under_the_quadrature() -> None:
-    grid = sphere_grid(7, 7)
-    assert grid.weights.sum() == pytest.approx(4 * np.pi)
-    assert grid.expanded(grid.values(np.eye(64))) == pytest.approx(np.eye(64), abs=1e-12)
-
-
-def test_that_values_are_sums_of_the_harmonics_at_the_nodes() -> None:
-    grid = sphere_grid(9, 5)
-    rows = np.random.default_rng(0).standard_normal((4, 36))
-    assert grid.values(rows) == pytest.approx(rows @ harmonics(grid.directions, 5), abs=1e-12)

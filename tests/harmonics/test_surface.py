@@ -25,11 +25,6 @@ from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid
 UNIT_SPHERE = ShCoefficients([np.sqrt(4 * np.pi)])
 
 
-def test_that_a_sphere_has_its_volume():
-    assert enclosed_volume(UNIT_SPHERE.scaled(2.0)) == pytest.approx(32 / 3 * np.pi, rel=1e-13)
-    assert reconstruct(UNIT_SPHERE, level=3).volume == pytest.approx(4 / 3 * np.pi, rel=1e-13)
-
-
 def test_that_an_ellipsoid_as_reference_has_its_volume_and_the_area_of_carlsons_integral():
     a, b, c = 3.0, 2.0, 1.2
     ellipsoid = Ellipsoid(np.eye(3), [a, b, c])

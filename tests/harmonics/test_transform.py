@@ -35,12 +35,6 @@ def test_that_no_ray_of_a_grid_lies_in_a_coordinate_plane():
     assert np.abs(ray_grid(60).directions).min() > 1e-7
 
 
-def test_that_parsevals_identity_holds(rough):
-    particle, grid = rough(12), ray_grid(24)
-    samples = evaluate_on_grid(grid, particle)
-    assert grid.mean(samples**2) * 4 * np.pi == pytest.approx(float((particle.values**2).sum()), rel=1e-12)
-
-
 def test_that_sampling_at_the_degree_of_the_fit_folds_finer_shape_into_it(rough):
     """SHAPE: the error at l = 10 falls from percent to nothing as the grid's degree grows to the band's."""
     particle = rough(40, strength=0.4)

@@ -10,7 +10,6 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.contours import contour, windowed_sinc
 from regolith_studio.imaging.grain_surface import (
     RefinementSettings,
-    corner_normals,
     coverage,
     grey_mesh,
     mask_mesh,
@@ -160,12 +159,3 @@ def test_that_corners_go_back_only_where_faces_cross() -> None:
     assert count_self_intersections(found.vertices, found.faces) == 0
     assert np.array_equal(found.vertices[aside > 0.9], pushed[aside > 0.9])
     assert found.volume == pytest.approx(disc.volume, rel=0.1)
-
-
-def test_that_a_surface_that_does_not_cross_stays_as_it_is() -> None:
-    larger = Mesh(9.3 * COARSE_SPHERE.vertices + 12.2, COARSE_SPHERE.faces)
-    assert without_crossings(larger, BALL) is larger
-
-
-def test_that_normals_of_a_ball_point_away_from_its_centre() -> None:
-    assert corner_normals(BALL.vertices, BALL.faces) == pytest.approx(COARSE_SPHERE.vertices, abs=0.02)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import MissingRequirement
-from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.volume_slabs import (
     ScratchArrays,
     SharedArray,
@@ -89,11 +88,6 @@ def test_that_a_shared_array_is_sent_as_the_path_of_its_file(tmp_path: Path) -> 
         assert shared.array.sum() == 3 + 300 * 200 * 2 * 5
 
 
-def test_that_an_array_in_memory_is_not_sent() -> None:
-    with pytest.raises(TypeError, match="in memory cannot be shared"):
-        pickle.dumps(SharedArray(np.zeros((2, 2, 2))))
-
-
 def test_that_a_volume_that_has_no_parts_is_read_by_this_process_alone() -> None:
     class Stream(Sequence):
         origin = (0.0, 0.0, 0.0)
@@ -114,17 +108,3 @@ def test_that_a_volume_that_has_no_parts_is_read_by_this_process_alone() -> None
     assert len(list(read())) == len(slab_ranges(stream.shape))
     assert np.array_equal(found[0].array, stream.array)
     assert stream.asked == list(range(30))
-
-
-def test_that_batches_hold_small_items_together_and_keep_their_order() -> None:
-    half = volume_slabs.BATCH_VOXELS // 2
-    tasks = []
-
-    def run(function, items):
-        for item in items:
-            tasks.append(item)
-            yield function(item)
-
-    sizes = [half, half, 3 * half, 1, 2]
-    assert list(volume_slabs.in_batches(run, str, sizes, int)) == [str(size) for size in sizes]
-    assert tasks == [[half, half], [3 * half], [1, 2]]

@@ -6,7 +6,6 @@ import pytest
 
 from regolith_studio.errors import FileError, GeometryError, InputError
 from regolith_studio.io.atomic import staged_folder
-from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
 from regolith_studio.readers.sandbox.parent import sha256_of
 from regolith_studio.readers.settings import UNITS, unit_factor
@@ -24,11 +23,6 @@ def tree(tmp_path, cube):
     (tmp_path / "JSC-1A/.cache").mkdir()
     (tmp_path / "JSC-1A/.cache/p3.stl").write_bytes(b"")
     return tmp_path / "JSC-1A"
-
-
-def test_that_all_formats_announce_themselves():
-    assert set(MESH_FORMATS) == {"stl", "ply", "obj", "off", "gltf", "3mf"}
-    assert {".stl", ".ply", ".obj", ".off", ".glb", ".gltf", ".3mf"} <= mesh_suffixes()
 
 
 @pytest.mark.parametrize(

@@ -86,11 +86,6 @@ def test_that_xyz_with_types_and_velocities_is_read_with_a_note(first, read) -> 
     )
 
 
-def test_that_xyz_with_types_is_what_lammps_writes(read) -> None:
-    lines = [f"2 {row}" for row in rows(POINTS).splitlines()]
-    same(read("a.xyz", "\n".join(["50", "Atoms. Timestep: 0", *lines])), diameters=False)
-
-
 @pytest.mark.parametrize(
     ("name", "text"),
     [
@@ -240,15 +235,6 @@ def test_that_units_in_the_names_count_more_than_the_callers(read) -> None:
 )
 def test_that_positions_come_in_metres(unit, metres, read) -> None:
     assert np.allclose(read("a.csv", rows(POINTS), unit=unit).points, POINTS * metres, rtol=1e-12)
-
-
-def test_that_decimal_commas_are_read_where_semicolons_separate(read) -> None:
-    same(read("a.csv", rows(POINTS, DIAMETERS, separator=";").replace(".", ",")))
-
-
-def test_that_xyz_has_a_count_a_comment_and_species(read) -> None:
-    lines = [f"Si {row}" for row in rows(POINTS).splitlines()]
-    same(read("a.xyz", "\n".join(["50", "comment", *lines])), diameters=False)
 
 
 def test_that_extended_xyz_names_its_columns_and_the_last_frame_is_read(read) -> None:

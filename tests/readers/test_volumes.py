@@ -12,7 +12,6 @@ from scipy import ndimage
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.volume_formats import volume_suffixes
-from regolith_studio.readers.volumes import read
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.header import RawLayout, guess_kind, layout_from_name
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
@@ -218,10 +217,6 @@ def test_that_a_voxel_size_that_is_none_is_refused(stack, size) -> None:
         read_volume(stack, voxel_size=size)
 
 
-def test_that_a_tiff_has_no_choice_of_datasets(stack) -> None:
-    assert describe_volume(stack).datasets == ()
-
-
 def test_that_a_wrong_suffix_is_told(stack) -> None:
     renamed = stack.with_suffix(".npy")
     stack.rename(renamed)
@@ -351,15 +346,3 @@ def test_that_the_guide_lists_every_ending_of_a_volume() -> None:
     page = (Path(__file__).parents[2] / "docs" / "reading.md").read_text(encoding="utf-8")
     table = page.partition("## Volumes")[2].partition("A volume is indexed")[0]
     assert [suffix for suffix in sorted(volume_suffixes()) if f"`{suffix}`" not in table] == []
-
-
-def test_that_the_kind_of_a_file_is_judged_once_until_the_file_changes(tmp_path, monkeypatch) -> None:
-    evaluated = []
-    monkeypatch.setattr(read, "guess_kind", lambda slices: evaluated.append(len(slices)) or "grey")
-    np.save(tmp_path / "a.npy", SLICES)
-    describe_volume(tmp_path / "a.npy")
-    assert open_slabs(tmp_path / "a.npy", voxel_size=1.0).kind == "grey"
-    assert evaluated == [3]
-    np.save(tmp_path / "a.npy", SLICES[:2])
-    open_slabs(tmp_path / "a.npy", voxel_size=1.0)
-    assert evaluated == [3, 2]

@@ -6,7 +6,7 @@ from PIL import Image
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
-from regolith_studio.scene.animation import CELL_SIZE, degree_animation, degree_picture, degree_title
+from regolith_studio.scene.animation import CELL_SIZE, degree_animation, degree_picture
 
 
 def spheroid(ball: Mesh) -> Mesh:
@@ -50,8 +50,3 @@ def test_that_a_degree_with_a_negative_radius_keeps_its_place(ball):
     _, whole, empty = silhouettes(picture, 3)
     assert whole > 100
     assert empty == 0
-
-
-def test_that_the_title_tells_degree_and_error(ball):
-    flat = spheroid(ball)
-    assert degree_title(fit_harmonics(flat, 8), 0).startswith("l_max = 0, radial error ")

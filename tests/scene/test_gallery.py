@@ -38,14 +38,6 @@ def test_that_measured_particles_stand_above_drawn_ones(plotter):
     assert below < -30
 
 
-def test_that_a_new_gallery_replaces_the_old_one(plotter):
-    show_gallery(plotter, [ball(1.0)], [ball(1.0)])
-    show_gallery(plotter, [], [ball(1.0)])
-    assert set(plotter.actors) == {"drawn"}
-    show_gallery(plotter, [], [])
-    assert not plotter.actors
-
-
 @pytest.mark.parametrize("aspect", [0.5, 1.0, 3.0])
 def test_that_all_particles_are_in_the_picture(aspect):
     """Six of diameter 2 with gaps of an eighth of it in a row of about 13.4; two rows."""

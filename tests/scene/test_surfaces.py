@@ -62,29 +62,10 @@ def test_that_the_distance_map_comes_and_goes(plotter, ball):
     assert len(plotter.scalar_bars) == 0
 
 
-def test_that_clearing_leaves_an_empty_picture(plotter, ball):
-    surfaces.show_particle(plotter, ball)
-    full = plotter.screenshot(return_img=True)
-    surfaces.clear(plotter)
-    plotter.render()
-    empty = plotter.screenshot(return_img=True)
-    assert np.ptp(full.reshape(-1, 3), axis=0).max() > 50
-    assert np.ptp(empty.reshape(-1, 3), axis=0).max() < 10
-
-
 def test_that_a_wireframe_shows_the_ground_between_its_lines(plotter, ball):
     surfaces.show_particle(plotter, ball)
     surfaces.set_wireframe(plotter, True)
     assert plotter.actors[surfaces.SURFACE].prop.style == "Wireframe"
-
-
-def test_that_distances_from_a_sphere_are_radius_differences(ball):
-    rng = np.random.default_rng(3)
-    directions = rng.normal(size=(300, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    radii = rng.uniform(15.0, 45.0, 300)
-    found = signed_distances(directions * radii[:, None], ball)
-    assert found == pytest.approx(radii - 30.0, abs=0.25)  # the facets lie up to 0.2 inside the sphere
 
 
 def test_that_distances_agree_with_vtk(ball):

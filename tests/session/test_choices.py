@@ -1,6 +1,5 @@
 """Choices check themselves and say in one sentence what is wrong."""
 
-import pickle
 from typing import Any
 
 import pytest
@@ -39,12 +38,6 @@ def test_that_a_bad_choice_is_one_plain_sentence(changes: dict[str, Any], words:
     assert str(caught.value).endswith(".")
 
 
-def test_that_choices_are_values() -> None:
-    assert Choices() == Choices()
-    assert hash(Choices()) == hash(Choices())
-    assert pickle.loads(pickle.dumps(Choices(l_max=4))) == Choices(l_max=4)
-
-
 def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified() -> None:
     chosen = Choices().replaced(preset="all")
     assert not chosen.preset_modified
@@ -71,8 +64,3 @@ def test_that_one_of_four_numbers_says_how_fine_a_polyhedron_is(
         *(facets, error, most),
         words,
     )
-
-
-def test_that_the_order_of_a_coarsening_repeats_the_choices() -> None:
-    request = Choices(n_facets=12, seed=4, l_max=3, target="particle").coarsening_request
-    assert (request.n_facets, request.seed, request.l_max, request.target) == (12, 4, 3, "particle")

@@ -4,19 +4,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.coefficients import sample_spectrum
 from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.shape_models.models.gaussian_field import MODEL, GaussianField, GaussianFieldSettings
 from regolith_studio.shape_models.realizations import positive_rows
 from regolith_studio.shape_models.sample import Sample
-
-
-def test_that_the_estimates_are_those_of_the_sample_spectrum(rough_sample: Callable[..., Sample]) -> None:
-    sample = rough_sample(40, 5)
-    field = MODEL.fit(sample, GaussianFieldSettings(l_max=5))
-    expected = sample_spectrum([sample.particle(i) for i in range(40)])
-    np.testing.assert_allclose(field.spectrum, expected.values, rtol=1e-12)
-    assert field.mean == pytest.approx(expected.mean_radius * np.sqrt(4 * np.pi))
 
 
 def test_that_the_estimates_of_a_large_draw_are_the_numbers_it_was_drawn_with() -> None:

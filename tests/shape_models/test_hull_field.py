@@ -29,7 +29,6 @@ from regolith_studio.shape_models.shape_features import (
     ROWS,
     SPHERICITY,
     hull_grid,
-    outer_features_of_log_radii,
     outer_features_of_radii,
     powers,
     shape_features,
@@ -46,13 +45,6 @@ def _dented(n: int, seed: int = 0) -> np.ndarray:
     rows = 0.05 * rng.normal(size=(n, 49))
     rows[:, 0] = 0.0
     return np.asarray(hull_grid(14, 6).grid.values(rows))
-
-
-def test_that_the_hull_of_an_ellipsoid_is_itself() -> None:
-    shapes = hull_grid(25, 4)
-    frames = np.eye(3)[None]
-    logs = log_ellipsoids(shapes.grid.directions, np.array([[0.3, 0.2]]), frames)
-    np.testing.assert_allclose(shapes.hulls(np.exp(logs)), np.exp(logs), rtol=0.01)
 
 
 def test_that_an_ellipsoid_has_the_axes_asked_for() -> None:
@@ -226,14 +218,6 @@ def test_that_outer_numbers_are_those_of_meshes(cement: Sample) -> None:
     draws = Realizations(few.coefficients, "radius", "measured", 0)
     sphericities = [describe(virtual_mesh(draws, i, 4), ["sphericity"])["sphericity"] for i in range(12)]
     np.testing.assert_allclose(1 / (1 + np.exp(-found[:, SPHERICITY])), sphericities, atol=4e-3)
-
-
-def test_that_outer_numbers_of_ellipsoids_are_the_ratios_of_their_axes() -> None:
-    grid = shape_grid(16).grid
-    form = np.array([[0.2, 0.15], [0.4, 0.0]])
-    logs = log_ellipsoids(grid.directions, form, np.stack([np.eye(3)] * 2))
-    found = outer_features_of_log_radii(grid.expanded(logs), np.zeros(2))
-    np.testing.assert_allclose(found[:, 0], form.sum(axis=1), atol=0.02)
 
 
 @pytest.mark.slow

@@ -155,12 +155,6 @@ def test_that_a_model_survives_pickling(key: str, fitted: dict[str, FittedModel]
     np.testing.assert_array_equal(draws.coefficients, fitted[key].draw(3, 1).coefficients)
 
 
-@keys
-def test_that_a_degree_beyond_the_sample_is_refused(key: str, rough_sample: Callable[..., Sample]) -> None:
-    with pytest.raises(InputError, match="no l_max = 30"):
-        MODELS[key].fit(rough_sample(8), MODELS[key].Settings(l_max=30))
-
-
 @fitted_anew
 def test_that_two_particles_are_enough(
     key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]

@@ -1,6 +1,5 @@
 """Fig. 8 for small samples."""
 
-import pickle
 import re
 from pathlib import Path
 
@@ -115,16 +114,6 @@ def test_that_symbols_have_real_subscripts_in_figures(study: CoarseningStudy) ->
     assert r"D$_\mathrm{min}$" in marks
     assert not any(re.search(r"\w_", mark) for mark in marks)
     assert marks[-1] == "J"
-
-
-def test_that_a_study_travels_between_processes(study: CoarseningStudy) -> None:
-    assert (pickle.loads(pickle.dumps(study)).errors == study.errors).all()
-
-
-def test_that_progress_counts_particles() -> None:
-    told, _ = played(coarsening_study([Particle("a", egg(1.3))], ROWS[:1]))
-    assert [(step.done, step.total) for step in told] == [(1, 1)]
-    assert told[0].partial is not None
 
 
 def test_that_the_rows_are_those_of_the_figure() -> None:

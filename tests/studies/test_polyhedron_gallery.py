@@ -18,10 +18,8 @@ from regolith_studio.studies.figures.degrees import (
     EDGE,
     VIEW,
     degree_figure,
-    gallery_figure,
     union_picture,
     visible_facets,
-    write_gallery,
 )
 from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy, gallery_table
 from tests.coarsening.compound.unions import manifold_of
@@ -79,11 +77,6 @@ def test_that_the_nearer_part_of_a_union_hides_the_farther_one() -> None:
     assert (np.abs(picture[..., :3] - float(EDGE)).max(axis=2) < 1e-9).any()
 
 
-def test_that_the_view_is_a_rotation() -> None:
-    np.testing.assert_allclose(VIEW @ VIEW.T, np.eye(3), atol=2e-3)
-    assert np.linalg.det(VIEW) == pytest.approx(1.0, abs=2e-3)
-
-
 def test_that_numbers_and_failures_have_lines_of_their_own(brick: GalleryPolyhedron) -> None:
     study = GalleryStudy(("All", "V"), ("a",), {(0, 0): brick, (1, 0): "The mesh is open."})
     table = gallery_table(study)
@@ -107,16 +100,6 @@ def test_that_a_union_comes_back_from_text_to_the_bit(elbow_cell: GalleryPolyhed
     np.testing.assert_array_equal(again.polyhedron.places, elbow().places)
     np.testing.assert_array_equal(again.polyhedron.vertices, elbow().vertices)
     assert again.document() == elbow_cell.document()
-
-
-def test_that_the_same_study_gives_the_same_bytes(
-    brick: GalleryPolyhedron, elbow_cell: GalleryPolyhedron, tmp_path
-) -> None:
-    study = GalleryStudy(("All", "V"), ("a", "b"), {(0, 0): brick, (1, 1): elbow_cell, (0, 1): "No."})
-    one, other = write_gallery(study, tmp_path / "one"), write_gallery(study, tmp_path / "other")
-    assert [path.name for path in one] == ["solids.csv", "solids.json", "solids.png", "solids.svg"]
-    assert [path.read_bytes() for path in one] == [path.read_bytes() for path in other]
-    assert len(gallery_figure(study).axes) == 4
 
 
 def test_that_a_name_with_dollars_stands_in_a_figure_as_it_is() -> None:
