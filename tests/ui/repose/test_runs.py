@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 
 from regolith_studio.dataset.parameters import ContactParameters
-from regolith_studio.dem.engine import check_run
 from regolith_studio.dem.engine_process import EngineError
-from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
+from regolith_studio.dem.run_io import FORMAT, read_run, save_result
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import JobCancelled
 from regolith_studio.jobs.events import Partial
-from regolith_studio.messages import to_json
 from regolith_studio.ui.dialogs.files import FolderDialog
-from regolith_studio.ui.pages.repose.runs import checks_text
 from regolith_studio.ui.result_card import ResultState
 from tests.ui.repose.conftest import import_positions, pile_of, small, watch_moments
 
@@ -30,6 +27,16 @@ STOPPED = {
         "contact": {"static_friction": 0.8},
     },
 }
+
+
+@pytest.fixture
+def saved_run(tmp_path):
+    """The folder of a run that was stopped when its heap lay."""
+    run = tmp_path / "run"
+    run.mkdir()
+    save_result(run, STOPPED, pile_of(30.0), 1.0)
+    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
+    return run
 
 
 def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait, monkeypatch, tmp_path):
@@ -139,16 +146,12 @@ def test_that_a_drum_runs_beside_a_measured_angle_and_its_filling_is_used_again(
     wait(lambda: "filled with a friction of 0.8, not 0.4" in setup.scaling_report.text())
 
 
-def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monkeypatch, wait):
+def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monkeypatch, wait, saved_run):
     out = tmp_path / "out"
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(out))
     page.export_heap()
     assert "no run to export" in page._context.toast.sentence.text()
-    run = tmp_path / "run"
-    run.mkdir()
-    save_result(run, STOPPED, pile_of(30.0), 1.0)
-    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
-    page._show_run(read_run(run))
+    page._show_run(read_run(saved_run))
     page.export_heap()
     wait((out / "export.json").is_file)
     wait(lambda: str(out) in page._context.toast.sentence.text())
@@ -178,57 +181,21 @@ def test_that_runs_are_compared(page, dataset, wait):
     assert (bars.y[:2], bars.y[3:5]) == ((17.0, 19.0), (25.0, 27.0))
 
 
-def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_window(speaking, tmp_path):
-    checks = check_run(
-        np.array([-5.0, 1.0]),
-        np.array([0.134]),
-        energy_gain=0.0,
-        kinetic_energy=0.0,
-        at_rest=True,
-        filling=(0, 0),
-        lowest=np.zeros(2),
-    )
-    document = {"checks": {"problems": [str(each) for each in checks.problems], "passed": False}}
-    document["messages"] = [to_json(each) for each in checks.problems]
-    run = RunSummary(tmp_path, json.loads(json.dumps(document)))
-    assert checks_text(run) == " ".join(checks.problems)
-    speaking("de")
-    assert checks_text(run) == (
-        "1 von 2 Partikeln fielen durch die Platte. "
-        "100,0 % der Kontakte sind tiefer als 2 % des mittleren Durchmessers. "
-        "Partikel überlappen um bis zu 13,4 % des mittleren Durchmessers."
-    )
-
-
-def test_that_a_drum_is_checked_without_a_plate(tmp_path):
-    checks = {"problems": [], "particles_out": 300, "max_overlap": 0.017, "plate_depth": 0.0}
-    run = RunSummary(tmp_path, {"checks": checks, "case": {"drum": {"rpm": 10.0}}})
-    assert checks_text(run) == "300 particles, overlap ≤ 1.7 % d"
-
-
-def test_that_a_run_that_is_shown_again_offers_longer_ones_and_stays(page, dataset, tmp_path, wait):
+def test_that_a_run_that_is_shown_again_offers_longer_ones_and_stays(page, dataset, wait, saved_run):
     page.setup.set_dataset(dataset)
     wait(lambda: page._prepared is not None)
-    run = tmp_path / "run"
-    run.mkdir()
-    save_result(run, STOPPED, pile_of(30.0), 1.0)
-    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
-    page._show_run(read_run(run))
+    page._show_run(read_run(saved_run))
     kept = json.loads(json.dumps(page.state()))
     page._show_nothing("")
     page._prepared = None
     page.restore(kept)
     wait(lambda: page._prepared is not None and page._measured is not None)
     assert not page.limits.buttons[1].isHidden()
-    assert page._shown_run == run
+    assert page._shown_run == saved_run
 
 
-def test_that_a_project_shows_its_run_again_or_says_that_it_is_gone(page, tmp_path, wait):
-    run = tmp_path / "run"
-    run.mkdir()
-    save_result(run, STOPPED, pile_of(30.0), 1.0)
-    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
-    page._show_run(read_run(run))
+def test_that_a_project_shows_its_run_again_or_says_that_it_is_gone(page, tmp_path, wait, saved_run):
+    page._show_run(read_run(saved_run))
     wait(lambda: page._measured is not None)
     kept = json.loads(json.dumps(page.state()))
     figures = [each.text() for each in page.angle.figures]
@@ -236,7 +203,7 @@ def test_that_a_project_shows_its_run_again_or_says_that_it_is_gone(page, tmp_pa
     page.restore(kept)
     wait(lambda: page._measured is not None)
     assert [each.text() for each in page.angle.figures] == figures
-    run.rename(tmp_path / "moved")
+    saved_run.rename(tmp_path / "moved")
     page.restore(kept)
     assert page.angle.record.state is ResultState.FAILED
-    assert str(run) in page.angle.sentence.text()
+    assert str(saved_run) in page.angle.sentence.text()

@@ -7,12 +7,11 @@ from threading import Event
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
-from PySide6.QtWidgets import QFileDialog, QLabel
+from PySide6.QtCore import QPoint
+from PySide6.QtWidgets import QFileDialog
 
 from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.parameters import DRUM, ContactParameters, LiftingCylinderTest
-from regolith_studio.dem.angle_of_repose import check_number
 from regolith_studio.dem.evaluation import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.errors import RegolithError
@@ -24,7 +23,7 @@ from regolith_studio.jobs.dataset_jobs import DatasetBuildResult
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.ui.layout import Collapsible, scrolled_column
 from regolith_studio.ui.pages.repose import page as page_module
-from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel, engine_table
+from regolith_studio.ui.pages.repose.setup import CaseScale, LimitsStrip, SetupPanel
 from regolith_studio.ui.result_card import ResultState
 from regolith_studio.ui.widgets.forms import ParameterForm
 from tests.dem.conftest import box_dataset
@@ -125,13 +124,6 @@ def test_that_a_dataset_written_again_into_its_folder_is_drawn_again(page, tmp_p
     assert page._prepared is drawn
     session.dataset_folder = write_dataset(tmp_path / "set", box_dataset())
     wait(lambda: page._prepared not in (drawn, None))
-
-
-def test_that_no_sentence_of_the_card_is_repeated_in_the_section(page, dataset, wait):
-    page.setup.set_dataset(dataset)
-    wait(lambda: "Not run yet" in page.angle.sentence.text())
-    texts = [each.text() for each in page.findChildren(QLabel) if each.isVisibleTo(page)]
-    assert sum("Not run yet" in text for text in texts) == 1
 
 
 def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_before(
@@ -268,16 +260,6 @@ def test_that_the_card_says_that_a_dataset_is_being_built_and_stops_it(page, wai
     assert page.setup.dataset == dataset
 
 
-def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking):
-    speaking("de")
-    with pytest.raises(RegolithError) as caught:
-        check_number(120, EvaluationSettings())
-    panel = shown(SetupPanel())
-    panel.show_consequences([], str(caught.value))
-    assert panel.problem.text().startswith("120 Partikel")
-    assert "150" in panel.problem.text()
-
-
 def test_that_no_run_can_be_set_up_with_fewer_particles_than_its_evaluation_accepts(setup):
     assert setup.particles.minimum() == EvaluationSettings().min_particles
     setup.set_evaluation(min_particles=60)
@@ -308,9 +290,3 @@ def test_that_the_lights_say_how_far_a_case_is_from_what_is_recommended(page, da
     monkeypatch.setattr(page, "run_test", lambda: started.append(page.setup.particles.value()))
     page.limits.buttons[1].click()
     assert started == [1000]
-
-
-def test_that_sentences_about_engines_begin_at_the_left_where_they_are_seen(app):  # noqa: ARG001
-    rows = engine_table().rows
-    cells = [rows.item(row, column) for row in range(rows.rowCount()) for column in range(rows.columnCount())]
-    assert not any(Qt.AlignmentFlag.AlignRight & cell.textAlignment() for cell in cells)
