@@ -16,7 +16,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.extraction_settings import read_grain_settings
 from regolith_studio.jobs.particle_jobs import load_particles
 from regolith_studio.readers.coefficient_tables import read_coefficients
-from regolith_studio.readers.particles import FileProblem, read_mesh
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.readers.volumes.read import describe_volume
@@ -84,19 +84,6 @@ def test_that_odd_things_in_a_folder_cost_no_good_file(cube, tmp_path: Path) -> 
     assert [particle.name for particle in loaded.particles] == ["good"]
     told = sorted(Path(problem.path).stem for problem in loaded.problems)
     assert told == ["dangling", "empty", "pipe", "zeros"]
-
-
-def test_that_a_problem_names_its_path_once() -> None:
-    named = FileProblem("mixed/b.stl", "b.stl is empty: it has no bytes at all.")
-    assert named.with_path == "mixed/b.stl is empty: it has no bytes at all."
-    other = FileProblem("mixed", "The folder mixed holds no mesh file.")
-    assert other.with_path == "mixed: The folder mixed holds no mesh file."
-
-
-def test_that_a_dataset_whose_document_is_a_pipe_is_a_finding(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "dataset.json")
-    (problem,) = validate_dataset(tmp_path)
-    assert "is not a regular file" in problem
 
 
 def test_that_links_in_circles_can_be_remembered_and_checked(tmp_path: Path) -> None:

@@ -111,14 +111,6 @@ def test_that_a_file_with_changed_arrays_is_refused(
         read_shape_source(str(tmp_path / "x"))
 
 
-def test_that_a_fit_that_lacks_coefficients_of_a_particle_is_refused(folder: Path, tmp_path: Path) -> None:
-    document = json.loads((folder / "fit.json").read_text())
-    document["particles"].pop()
-    (tmp_path / "x.json").write_text(json.dumps(document))
-    with pytest.raises(FileError, match="names 2 particles but holds coefficients of 3"):
-        read_shape_source(str(tmp_path / "x"))
-
-
 def test_that_arrays_are_read_as_they_were_written() -> None:
     arrays = {
         "rows": np.asfortranarray(np.random.default_rng(0).normal(size=(4, 3))),

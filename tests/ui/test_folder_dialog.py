@@ -73,7 +73,6 @@ def test_that_a_folder_that_is_there_is_taken_as_it_is(answered, tmp_path):
     assert (tmp_path / "old" / "kept.txt").read_text() == "mine"
 
 
-@pytest.mark.parametrize("by", ["key", "mouse"])
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
@@ -82,9 +81,9 @@ def test_that_a_folder_that_is_there_is_taken_as_it_is(answered, tmp_path):
         ("x" * 300, "cannot be made (its name is too long)."),
     ],
 )
-def test_that_a_folder_that_cannot_be_made_is_refused_with_its_reason(answered, tmp_path, by, name, reason):
+def test_that_a_folder_that_cannot_be_made_is_refused_with_its_reason(answered, tmp_path, name, reason):
     (tmp_path / "file").write_text("not a folder")
-    chosen, said = answered(str(tmp_path / name), by)
+    chosen, said = answered(str(tmp_path / name))
     assert chosen == ""
     assert len(said) == 1
     assert str(tmp_path / name) in said[0]
