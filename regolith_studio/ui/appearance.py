@@ -11,7 +11,14 @@ from PySide6.QtWidgets import QApplication, QFormLayout, QMainWindow, QSpinBox, 
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.layout import GrowingDialog, dialog_buttons, named, restore_borders, vbox
+from regolith_studio.ui.layout import (
+    GrowingDialog,
+    dialog_buttons,
+    named,
+    restore_borders,
+    room_on_screen,
+    vbox,
+)
 from regolith_studio.ui.theme import (
     LARGEST,
     SMALLEST,
@@ -27,8 +34,6 @@ from regolith_studio.ui.widgets.labels import hint_label
 LAYOUT = "layout"
 STANDARD_SIZE = (1480, 900)
 """Of a new window in pixels, where the screen is large enough."""
-FRAME = QSize(8, 40)
-"""Pixels that window managers add to the size of a window for its title and borders, at most."""
 NO_LIMIT = (1 << 24) - 1
 """Qt's maximum height of a widget that has none."""
 
@@ -82,11 +87,6 @@ def show_bars(window: QMainWindow, others: Sequence[QWidget], *, shown: bool) ->
         bar.setVisible(shown)
     # the shortcuts of a menu bar that is hidden are not heard
     window.menuBar().setMaximumHeight(NO_LIMIT if shown else 0)
-
-
-def room_on_screen(window: QMainWindow) -> QSize:
-    """Largest size of the window's content with which its frame is on the screen."""
-    return window.screen().availableSize() - FRAME
 
 
 def _bytes(text: object) -> QByteArray | None:

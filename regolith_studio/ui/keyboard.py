@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import cast
 
 import shiboken6
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QAction, QGuiApplication, QKeyEvent, QKeySequence, QWindow
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -29,7 +29,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import dialog_buttons, hbox, named, vbox
+from regolith_studio.ui.layout import dialog_buttons, hbox, named, room_on_screen, vbox
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, hint_label
 from regolith_studio.ui.widgets.text_table import TextTable
@@ -290,7 +290,7 @@ class ShortcutsDialog(QDialog):
         self.setWindowTitle(tr("Keyboard and mouse"))
         self.setObjectName("shortcuts_dialog")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.resize(620, 640)
+        self.resize(QSize(620, 640).boundedTo(room_on_screen(self)))
         self._shortcuts, self._titles = shortcuts, titles
         self.search = named(QLineEdit(), "shortcuts_search", tr("Search commands"))
         self.search.setPlaceholderText(tr("Search commands and keys"))

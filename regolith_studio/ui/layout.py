@@ -111,6 +111,15 @@ class Collapsible(QWidget):
         self.content.setVisible(is_open)
 
 
+FRAME = QSize(8, 40)
+"""Pixels that window managers add to the size of a window for its title and borders, at most."""
+
+
+def room_on_screen(window: QWidget) -> QSize:
+    """Largest size of the window's content with which its frame is on the screen."""
+    return window.screen().availableSize() - FRAME
+
+
 class GrowingDialog(QDialog):
     """A dialog that becomes higher where its texts do: Qt would squeeze its fields and cut the texts."""
 

@@ -105,6 +105,18 @@ class ResultRecord:
         return "\n".join(each for each in (": ".join(filter(None, (state, origin))), self.note) if each)
 
 
+def as_earlier(record: ResultRecord) -> ResultRecord:
+    """The record of a result that a later job has not replaced, marked so."""
+    mark, origin = tr("earlier result"), record.made_from
+    return record if origin.startswith(mark) else replace(record, made_from=f"{mark}, {origin}")
+
+
+def failed_record(before: ResultRecord, sentence: str) -> ResultRecord:
+    """What a job that has failed leaves of the record that was shown before it, with the reason."""
+    kept = as_earlier(before) if before.values else before
+    return replace(kept, state=ResultState.FAILED, note=sentence)
+
+
 class ResultView(QFrame):
     """Large figures with captions, and sentences beside them, or below where there is little room.
 
@@ -421,10 +433,7 @@ class RunController:
     def _record_of_failure(self) -> ResultRecord:
         """What a job that has failed leaves: its partial result, else the earlier one, marked so."""
         partial, earlier = self._card.record, self._earlier
-        if partial.values or not earlier.values:
-            return partial
-        mark, origin = tr("earlier result"), earlier.made_from
-        return earlier if origin.startswith(mark) else replace(earlier, made_from=f"{mark}, {origin}")
+        return partial if partial.values or not earlier.values else as_earlier(earlier)
 
     def _set_running(self, running: bool) -> None:
         self.running = running

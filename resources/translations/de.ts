@@ -9237,7 +9237,7 @@
     </message>
     <message>
         <source>{value} across the diameter (≥ {limit})</source>
-        <translation>{value} auf den Durchmesser (≥ {limit})</translation>
+        <translation>{value} je Durchmesser (≥ {limit})</translation>
     </message>
     <message>
         <source>{value} particles (≥ {limit})</source>
@@ -9245,7 +9245,7 @@
     </message>
     <message>
         <source>{value} × particle size (paper: {limit})</source>
-        <translation>{value} × Partikelgröße (Artikel: {limit})</translation>
+        <translation>{value} × Größe (Artikel: {limit})</translation>
     </message>
     <message>
         <source>{value}; {low} to {high} in 90 % of grains of this size and noise</source>

@@ -305,6 +305,7 @@ def test_that_a_failed_export_keeps_the_earlier_ones(chosen, tmp_path, wait) -> 
     assert [each.text() for each in chosen.result.figures] == ["3", "2"]
     assert not chosen.result.figures[1].isEnabled()
     assert "there is a file of that name" in chosen.result.sentence.text()
+    assert chosen.result.sentence.text().startswith("Failed: earlier result, 8 particles")
     assert [one.folder.parent for one in chosen.exports.exports] == [tmp_path / "out"] * 2
 
 

@@ -1,7 +1,7 @@
 """Keys of the commands: changed in the dialog, refused where they are taken, there in the next window."""
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
@@ -80,6 +80,11 @@ def test_that_kept_keys_that_collide_by_now_are_left_out(actions):
     kept = Preferences(window={"shortcuts": {"about": "Ctrl+Z", "gone": "F9", "quit": 3}})
     made = Shortcuts(actions, PAGES, kept)
     assert (made.keys("about"), made.keys("quit")) == ("", "Ctrl+Q")
+
+
+def test_that_the_dialog_is_no_higher_than_a_small_screen(shortcuts, shown, monkeypatch):
+    monkeypatch.setattr("regolith_studio.ui.keyboard.room_on_screen", lambda _: QSize(952, 500))
+    assert shown(ShortcutsDialog(shortcuts, {"scan.find": "Scan"})).height() <= 500
 
 
 def test_that_the_dialog_finds_changes_and_resets_by_keys_alone(shortcuts, shown):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, metadata, version
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QUrl, Slot
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QSize, Qt, QUrl, Slot
 from PySide6.QtGui import (
     QColor,
     QDesktopServices,
@@ -32,7 +32,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.guide import chapter
 from regolith_studio.resources import guide_folder, resource
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import STRETCH, dialog_buttons, hbox, named, vbox
+from regolith_studio.ui.layout import STRETCH, dialog_buttons, hbox, named, room_on_screen, vbox
 from regolith_studio.ui.theme import current_theme, pixmap
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import CITATION, heading, hint_label, with_subscripts
@@ -95,7 +95,7 @@ def guide_dialog(parent: QWidget, page: str = "") -> QDialog:
     dialog = named(QDialog(parent), "guide_dialog")
     dialog.setWindowTitle(tr("Guide"))
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-    dialog.resize(860, 680)
+    dialog.resize(QSize(860, 680).boundedTo(room_on_screen(dialog)))
     text = GuideBrowser()
     contents, back = QPushButton(tr("Contents")), QPushButton(tr("Back"))
     contents.clicked.connect(lambda: text.show_chapter(CONTENTS))

@@ -440,7 +440,7 @@ class ViewFrame(QFrame):
     def _choose_title(self) -> None:
         """The longest title that there is room for; the shortest with dots where there is none.
 
-        These are in the middle, since names of particles differ at their ends.
+        These are in the middle of one word, since names of particles differ at their ends.
         """
         self._title.ensurePolished()
         self._title.setToolTip(self._titles[0])
@@ -450,5 +450,6 @@ class ViewFrame(QFrame):
             if self._title.sizeHint().width() <= room:
                 return
         words = plain_text(self._titles[-1])
-        dotted = self._title.fontMetrics().elidedText(words, Qt.TextElideMode.ElideMiddle, room)
+        where = Qt.TextElideMode.ElideRight if " " in words else Qt.TextElideMode.ElideMiddle
+        dotted = self._title.fontMetrics().elidedText(words, where, room)
         self._title.setText(html.escape(dotted))

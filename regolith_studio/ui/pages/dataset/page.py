@@ -67,7 +67,7 @@ from regolith_studio.ui.pages.dataset.views import (
     provenance_text,
     shapes,
 )
-from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, failed_record
 from regolith_studio.ui.translation import tr, tr_count
 
 FIND, BUILD, EXPORT = "find", "build", "export"
@@ -303,7 +303,7 @@ class DatasetPage(PageWidget):
     def _show_failure(self, failure: Failed) -> None:
         self._target = ""
         self._show_result()
-        self.result.show_record(replace(self.result.record, state=ResultState.FAILED, note=failure.sentence))
+        self.result.show_record(failed_record(self.result.record, failure.sentence))
         self._context.toast.problem(failure.sentence, failure.details)
 
     def open_dataset(self) -> None:
