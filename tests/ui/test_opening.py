@@ -42,6 +42,19 @@ def test_that_the_unit_that_makes_a_grain_is_suggested_with_its_size(shown, leng
     assert dialog.result() == UnitDialog.DialogCode.Accepted
 
 
+def test_that_return_opens_once_the_size_is_known(shown, wait):
+    dialog = shown(UnitDialog([Path("grain.stl")], "um"))
+    dialog.activateWindow()
+    wait(lambda: dialog.focusWidget() is dialog.unit)
+    opened = []
+    dialog.accepted.connect(lambda: opened.append(True))
+    QTest.keyClick(dialog.focusWidget(), Qt.Key.Key_Return)
+    assert dialog.isVisible()
+    dialog.set_first(("grain", 120.0))
+    QTest.keyClick(dialog.focusWidget(), Qt.Key.Key_Return)
+    assert opened == [True]
+
+
 def test_that_a_dialog_grows_with_its_texts_instead_of_squeezing_its_fields(shown, wait):
     dialog = shown(UnitDialog([Path("apollo_sample1.stl")], "um"))
     high = dialog.unit.sizeHint().height()
