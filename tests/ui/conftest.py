@@ -177,10 +177,11 @@ def pictures_on_request(monkeypatch):
 
 @pytest.fixture
 def sample_window(shown, preferences, settled, pictures_on_request):  # noqa: ARG001
-    """Opens a window on the sample; its first polyhedron is there when it is returned."""
+    """Opens a window on the sample; its first polyhedron, by a fast method, is there when it is returned."""
 
-    def run(width=1100, height=720):
+    def run(width=1100, height=720, method="quadric"):
         made = open_window(views="image", preferences=preferences)
+        made.session.choose(method=method)
         made.resize(width, height)
         settled(shown(made), 170.0)
         assert made.session.results.coarsened is not None

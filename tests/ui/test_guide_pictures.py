@@ -37,7 +37,7 @@ def pictures_on_request():
 @pytest.fixture
 def window(sample_window, preferences):
     preferences.window["theme"] = "light"
-    return sample_window(1480, 900)
+    return sample_window(1480, 900, "exact")
 
 
 def steady(window, wait):
