@@ -282,7 +282,7 @@ def _two_flanked(
 
 def _without_tip(sections: Sequence[Section]) -> list[str]:
     """One sentence about all of these, or none."""
-    azimuths = ", ".join(f"{each.azimuth:g}" for each in sections)
+    azimuths = ", ".join(f"{azimuth:g}" for azimuth in sorted(each.azimuth for each in sections))
     reason = Message(NO_TIP if len(sections) == 1 else NO_TIPS, azimuths=azimuths)
     return [Message(LEFT_OUT, reason=reason)] if sections else []
 

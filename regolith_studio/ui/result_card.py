@@ -371,7 +371,7 @@ class RunController:
         ended
             Called when the job has failed or was stopped.
         earlier
-            Shown again, as an earlier result, if the job fails without one; by default what the card shows.
+            Shown again, as an earlier result, if the job ends without one; by default what the card shows.
         """
         self._earlier = earlier or self._card.record
         self._on_end, self._ended = ended or (lambda: None), None
@@ -420,7 +420,7 @@ class RunController:
         self._set_running(False)
         self._on_end()
         self._ended = ResultState.FAILED
-        self._show(replace(self._record_of_failure(), state=self._ended, note=failure.sentence))
+        self._show(replace(self._record_left(), state=self._ended, note=failure.sentence))
         self._context.toast.problem(failure.sentence, failure.details)
 
     def _stop(self) -> None:
@@ -428,10 +428,10 @@ class RunController:
         self._on_end()
         self._ended = ResultState.STOPPED
         note = self._stop_note or self._card.record.note
-        self._show(replace(self._card.record, state=self._ended, note=note))
+        self._show(replace(self._record_left(), state=self._ended, note=note))
 
-    def _record_of_failure(self) -> ResultRecord:
-        """What a job that has failed leaves: its partial result, else the earlier one, marked so."""
+    def _record_left(self) -> ResultRecord:
+        """What a job that has failed or was stopped leaves: its partial result, else the earlier one."""
         partial, earlier = self._card.record, self._earlier
         return partial if partial.values or not earlier.values else as_earlier(earlier)
 

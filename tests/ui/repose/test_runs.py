@@ -67,13 +67,14 @@ def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait, monkeypatch
     assert not page.busy()
 
 
-def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
+def test_that_a_stopped_run_marks_the_earlier_angle_and_changed_values_leave_none(
     page, dataset, wait, monkeypatch, tmp_path
 ):
     small(page, dataset)
     import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
     wait(lambda: page._measured is not None)
-    assert "°" in page.angle.figures[0].text()
+    before = page.angle.figures[0].text()
+    assert "°" in before
 
     def stopped(*_):
         yield Partial(Snapshot(pile_of(20.0, 40), 0.5, "lift"))
@@ -82,13 +83,17 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     monkeypatch.setattr("regolith_studio.ui.pages.repose.page.repose_steps", stopped)
     page.run_test()
     wait(lambda: not page.busy())
-    assert "stopped" in page.angle.sentence.text()
-    assert "°" not in page.angle.figures[0].text()
+    words = page.angle.sentence.text()
+    assert words.startswith("Stopped: earlier result, ")
+    assert "The run was stopped before it was measured." in words
+    assert page.angle.figures[0].text() == before
+    assert not page.angle.figures[0].isEnabled()
     assert page.sections.plot.is_empty()
     assert "Stopped" in page.player.frame.title
     assert page.angle.button.isEnabled()
     page.setup.particles.setValue(60)
     wait(lambda: len(page.player.pile) == 60)
+    assert "°" not in page.angle.figures[0].text()
     assert "Not run yet" in page.angle.sentence.text()
 
 
