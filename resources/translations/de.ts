@@ -4140,6 +4140,10 @@
         <translation>Veraltet</translation>
     </message>
     <message>
+        <source>Outdated: {names}.</source>
+        <translation>Veraltet: {names}.</translation>
+    </message>
+    <message>
         <source>Outside</source>
         <translation>Außerhalb</translation>
     </message>

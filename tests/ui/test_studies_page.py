@@ -238,7 +238,7 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
     page = window.go("studies")
     window.menus.by_name["studies.run_all"].trigger()
     wait(lambda: window.session.results.coarsening_study, SECONDS)
-    settled(window)
+    settled(window, SECONDS)
     assert not page.lmax_study.plot.is_empty()
     assert len(page.coarsening_study.table.values()) == len(paper_variants())
     heads = page.coarsening_study.table.table.verticalHeaderItem
@@ -252,7 +252,20 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
         lambda: not window.session.tasks and "Tables and figures are in" in window.toast.sentence.text(),
         SECONDS,
     )
-    assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg", ".sha256"}
+    suffixes = {path.suffix for path in folder.iterdir()}
+    assert suffixes == {".csv", ".json", ".png", ".svg", ".txt", ".sha256"}
+    card = page.coarsening_study.card.record
+    title, origin, *_ = (folder / "coarsening_study.txt").read_text().splitlines()
+    assert (title, origin) == ("Losses (Fig. 8)", f"{card.made_from}, {card.made_with}")
+    assert "seed 0" in origin
+    window.session.choose(n_facets=10)
+    wait(lambda: page.coarsening_study.card.record.state is ResultState.STALE)
+    window.menus.by_name["studies.save"].trigger()
+    wait(
+        lambda: not window.session.tasks and "Outdated: Losses (Fig. 8)" in window.toast.sentence.text(),
+        SECONDS,
+    )
+    assert (folder / "coarsening_study.txt").read_text().splitlines()[1].startswith("Outdated: ")
 
 
 def test_that_a_study_that_cannot_be_written_leaves_the_earlier_files(tmp_path, monkeypatch):
@@ -264,10 +277,11 @@ def test_that_a_study_that_cannot_be_written_leaves_the_earlier_files(tmp_path, 
 
     kind = SimpleNamespace(title="A study", write=write)
     monkeypatch.setattr("regolith_studio.session.outputs.studies.STUDIES", {"study": kind})
-    list(write_studies((("study", "old"),), tmp_path / "out"))
+    list(write_studies((("study", "old"),), tmp_path / "out", {"study": "15 particles"}))
     with pytest.raises(FileError, match="the disk is full"):
         list(write_studies((("study", "new"),), tmp_path / "out"))
     assert (tmp_path / "out" / "table.csv").read_text() == "old"
+    assert (tmp_path / "out" / "study.txt").read_text() == "15 particles"
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
+from types import MappingProxyType
 from typing import Any
 
 from regolith_studio.io.atomic import staged_folder
@@ -77,12 +78,21 @@ STUDIES: Mapping[str, StudyKind] = {
 """The first two can be asked for by a recipe, by the keys of ``session.choices.Kind``."""
 
 
-def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Steps:
-    """Write tables and figures; returns their paths. A job."""
+def write_studies(
+    studies: tuple[tuple[str, object], ...], folder: Path, origins: Mapping[str, str] = MappingProxyType({})
+) -> Steps:
+    """Write tables and figures; returns their paths. A job.
+
+    ``origins``: by kind, what a study was made from and with, written beside it as a text.
+    """
     yield Started(N_("Writing figures"), len(studies))
     written: tuple[Path, ...] = ()
     for number, (kind, study) in enumerate(studies, start=1):
         with staged_folder(folder, kind) as stage:
-            written += tuple(folder / path.name for path in STUDIES[kind].write(study, stage))
+            names = [path.name for path in STUDIES[kind].write(study, stage)]
+            if kind in origins:
+                names.append(f"{kind}.txt")
+                (stage / names[-1]).write_text(origins[kind], encoding="utf-8")
+            written += tuple(folder / name for name in names)
         yield Progress(number, len(studies), STUDIES[kind].title)
     return written

@@ -266,23 +266,39 @@ class StudiesPage(PageWidget):
         if not name:
             return
         self._context.remember("folder", name)
-        job = Job(write_studies, (done, Path(name)))
+        job = Job(write_studies, (done, Path(name), self._origins()))
         self._context.start(tr("Writing figures"), job, self._report_written, queue="save")
 
     def _report_written(self, paths: tuple[Path, ...]) -> None:
         listed = "\n".join(str(path) for path in paths)
         sentence = tr("Tables and figures are in {folder}.", folder=paths[0].parent)
-        if unfinished := self._unfinished():
+        if unfinished := self._titles_in(ResultState.RUNNING, ResultState.STOPPED):
             sentence += " " + tr("Unfinished: {names}.", names=", ".join(unfinished))
+        if outdated := self._titles_in(ResultState.STALE):
+            sentence += " " + tr("Outdated: {names}.", names=", ".join(outdated))
         self._context.toast.note(sentence, listed)
 
-    def _unfinished(self) -> list[str]:
-        partial_states = (ResultState.RUNNING, ResultState.STOPPED)
+    def _titles_in(self, *states: ResultState) -> list[str]:
+        """Titles of the studies with a result in one of these states."""
         return [
             self.tabs.tabText(self.tabs.indexOf(panel))
             for panel in self._panels
-            if panel.card.record.state in partial_states and panel.card.record.values
+            if panel.card.record.state in states and panel.card.record.values
         ]
+
+    def _origins(self) -> dict[str, str]:
+        """By kind of study, its title with what its card says: state, origin and settings."""
+        panels: dict[str, StudyPanel] = {
+            Kind.LMAX_STUDY.value: self.lmax_study,
+            Kind.COARSENING_STUDY.value: self.coarsening_study,
+            "solids_study": self.gallery,
+            **{f"{key}_study": panel for key, panel in self.variations.items()},
+        }
+        return {
+            kind: f"{self.tabs.tabText(self.tabs.indexOf(panel))}\n{panel.card.record.sentences()}\n"
+            for kind, panel in panels.items()
+            if panel.card.record.values
+        }
 
     def _wire(self, kind: Kind, panel: LmaxStudyPanel | CoarseningStudyPanel) -> None:
         panel.card.startRequested.connect(partial(self.start, kind))
