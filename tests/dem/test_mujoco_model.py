@@ -137,4 +137,4 @@ def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:
     assert solver.time_step() == settings.time_step / 2
     solver.data.qvel.reshape(-1, 6)[:, 0] = 1e3
     assert solver.time_step() == settings.time_step / 8
-    assert "0.025 for 75.0 %, 0.0125 for 25.0 %" in solver.notes({0.025: 3.0, 0.0125: 1.0})[0]
+    assert "0.025 (75.0 %); 0.0125 (25.0 %)" in solver.notes({0.025: 3.0, 0.0125: 1.0})[0]
