@@ -119,9 +119,11 @@ def test_that_building_finds_the_representatives_first(page, wait, tmp_path, mon
     assert not page.targets.export.isEnabled()
     page.sizes.set_text("measured")
     cards, show = [], page.result.show_record
-    monkeypatch.setattr(page.result, "show_record", lambda record: (cards.append(record.state), show(record)))
+    monkeypatch.setattr(
+        page.result, "show_record", lambda record: cards.append((show(record), page.result.record.state))
+    )
     QTest.mouseClick(page.targets.export, Qt.MouseButton.LeftButton)
-    assert cards[0] is ResultState.RUNNING
+    assert cards[0] == (None, ResultState.RUNNING)
     wait(lambda: page._dataset is not None)
     assert len(read_dataset(tmp_path / "regolith")) == 3
     QTest.mouseClick(page.representatives.start, Qt.MouseButton.LeftButton)

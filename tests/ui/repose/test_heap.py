@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 from benchmarks.heaps import surface_of_revolution
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.evaluation.profile import Discs
-from regolith_studio.dem.run_io import FORMAT, save_result
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import instancing
@@ -174,15 +173,6 @@ def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):
     assert max(height for _, height, _ in page.sections.plot.numbers()[1]) == pytest.approx(2.0, rel=0.2)
     page.export_run()
     assert "no measured heap" in page._context.toast.sentence.text()
-
-
-def test_that_the_player_refuses_the_final_state_of_another_run(page, tmp_path):
-    save_result(tmp_path, {"format": FORMAT}, pile_of(30.0), 1.0)
-    page.player.show_run([tmp_path / "final.npz"], "run")
-    assert len(page.player.pile) == 700
-    (tmp_path / "final.npz").write_bytes(particle_state_bytes(pile_of(20.0)))
-    page.player.show_run([tmp_path / "final.npz"], "run")
-    assert "not the final state of the run" in page.player.clock.text()
 
 
 def test_that_a_large_heap_is_drawn_coarsely_while_the_view_turns(page, monkeypatch, wait):

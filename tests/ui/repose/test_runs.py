@@ -7,8 +7,8 @@ import pytest
 
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.engine_process import EngineError
-from regolith_studio.dem.run_io import FORMAT, read_run, save_result
-from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.dem.run_io import FINAL, FORMAT, read_run, save_result
+from regolith_studio.dem.snapshot import Snapshot, particle_state_bytes
 from regolith_studio.errors import JobCancelled
 from regolith_studio.jobs.events import Partial
 from regolith_studio.ui.dialogs.files import FolderDialog
@@ -161,6 +161,15 @@ def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monke
     wait((out / "export.json").is_file)
     wait(lambda: str(out) in page._context.toast.sentence.text())
     assert {"particles.pvd", "heap.glb", "README.txt"} <= {path.name for path in out.iterdir()}
+
+
+def test_that_the_final_state_of_another_run_is_refused(page, saved_run):
+    page._show_run(read_run(saved_run))
+    assert len(page.player.pile) == 700
+    (saved_run / FINAL).write_bytes(particle_state_bytes(pile_of(20.0)))
+    page._show_run(read_run(saved_run))
+    assert "not the final state of the run" in page.player.clock.text()
+    assert "not the final state of the run" in page._context.toast.sentence.text()
 
 
 @pytest.mark.slow

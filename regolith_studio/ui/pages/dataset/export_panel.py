@@ -2,8 +2,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PySide6.QtCore import Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import (
@@ -17,9 +20,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import PARTS, RECORD, ExportOptions, ExportResult, load_command
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.lifting_cylinder import MANY_PARTICLES, CylinderFilling
+from regolith_studio.dataset.lifting_cylinder import MANY_PARTICLES, CylinderFilling, cylinder_filling
 from regolith_studio.dataset.parameters import (
     NOT_GIVEN,
     ContactParameters,
@@ -27,11 +31,14 @@ from regolith_studio.dataset.parameters import (
     LiftingCylinderTest,
     ScriptTimes,
 )
+from regolith_studio.dataset.size_distributions import ShapeClass
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
+from regolith_studio.session.project import fingerprint
 from regolith_studio.session.recipe import Exports
 from regolith_studio.settings import settings_in
 from regolith_studio.ui.layout import STRETCH, Collapsible, hbox, named, vbox
+from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.fields import ElidedCheckBox, NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -308,6 +315,59 @@ class LossesLabel(QScrollArea):
         self.label.setText(
             Markup("".join(lines)) or tr("Select a format to see what its files do not contain.")
         )
+
+
+class DatasetCard(ResultView):
+    """What has been written; it says that something is being written, whatever record it is given then."""
+
+    def __init__(self) -> None:
+        captions, export = (tr("Representatives"), tr("Formats written")), tr("Export …")
+        super().__init__("dataset_result", captions, export, done=tr("Open the folder"))
+        self._target = ""
+
+    def begin(self, target: Path) -> None:
+        """Show that something is being written there, until `end`."""
+        self._target = str(target)
+        self.show_task(None)
+        self.show_record(self.record)
+
+    def end(self) -> None:
+        self._target = ""
+
+    def show_record(self, record: ResultRecord) -> None:
+        if self._target:
+            record = replace(record, state=ResultState.RUNNING, note=self._target)
+        super().show_record(record)
+
+
+def filling_of(
+    dataset: Dataset | None, classes: Sequence[ShapeClass], options: ExportOptions, *, by_volume: bool
+) -> CylinderFilling:
+    """The particles that fill a cylinder: of a dataset, else of classes that one is to have.
+
+    `by_volume`: the weights of the classes are shares of the volume, not of the number.
+    """
+    if dataset is not None:
+        sizes = [one.sizes for one in dataset.representatives]
+        return cylinder_filling(dataset.class_weights("number").tolist(), sizes, options)
+    weights = np.array([one.weight for one in classes])
+    if by_volume:
+        weights /= [one.sizes.mean_cube() for one in classes]
+    return cylinder_filling(weights.tolist(), [one.sizes for one in classes], options)
+
+
+def entry_of(export: ExportResult) -> dict[str, str]:
+    """What a project keeps of an export."""
+    record = fingerprint(export.folder / RECORD)
+    return {"key": export.key, "folder": str(export.folder), "fingerprint": record}
+
+
+def export_of(entry: Mapping[str, str], dataset: Dataset) -> ExportResult | None:
+    """The export that an entry of a project names, if it is as it was."""
+    key, folder = entry["key"], Path(entry["folder"])
+    if key not in EXPORTERS or not fingerprint(folder / RECORD) == entry["fingerprint"] != "":
+        return None
+    return ExportResult(key, folder, (), load_command(EXPORTERS[key], folder, dataset))
 
 
 class ExportsList(QWidget):

@@ -5,16 +5,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.dataset.build import singleton_class
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import RECORD, ExportOptions, ExportResult, load_command
+from regolith_studio.dataset.export import ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.lifting_cylinder import CylinderFilling, cylinder_filling
+from regolith_studio.dataset.lifting_cylinder import CylinderFilling
 from regolith_studio.dataset.representatives import QualityPoint
 from regolith_studio.dataset.size_distributions import ShapeClass
 from regolith_studio.errors import RegolithError
@@ -54,7 +53,15 @@ from regolith_studio.ui.pages.dataset.controls import (
     RepresentativesPanel,
     SizesPanel,
 )
-from regolith_studio.ui.pages.dataset.export_panel import ExportPanel, ExportsList, LossesLabel
+from regolith_studio.ui.pages.dataset.export_panel import (
+    DatasetCard,
+    ExportPanel,
+    ExportsList,
+    LossesLabel,
+    entry_of,
+    export_of,
+    filling_of,
+)
 from regolith_studio.ui.pages.dataset.views import (
     SHAPE_FIELDS,
     SIZE,
@@ -67,7 +74,7 @@ from regolith_studio.ui.pages.dataset.views import (
     provenance_text,
     shapes,
 )
-from regolith_studio.ui.result_card import ResultRecord, ResultState, ResultView, failed_record
+from regolith_studio.ui.result_card import ResultRecord, ResultState, failed_record
 from regolith_studio.ui.translation import tr, tr_count
 
 FIND, BUILD, EXPORT = "find", "build", "export"
@@ -98,14 +105,13 @@ class DatasetPage(PageWidget):
         self._opened: DatasetRequest | None = None
         self._to_reopen: Mapping[str, Any] | None = None
         self._to_build: tuple[Path, bool, Path | None] | None = None
-        self._task, self._target = 0, ""  # of the build or export that is running
+        self._task = 0  # of the build or export that is running
         self._classes_to_build: list[ShapeClass] = []
 
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), ExportPanel()
-        captions, export = (tr("Representatives"), tr("Formats written")), tr("Export …")
-        self.result = ResultView("dataset_result", captions, export, done=tr("Open the folder"))
+        self.result = DatasetCard()
         self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
@@ -140,10 +146,7 @@ class DatasetPage(PageWidget):
         if self._folder is not None:
             document = fingerprint(self._folder / "dataset.json")
             made |= {"folder": str(self._folder), "fingerprint": document, "current": self._is_current()}
-            made["exports"] = [
-                {"key": one.key, "folder": str(one.folder), "fingerprint": fingerprint(one.folder / RECORD)}
-                for one in self._exports
-            ]
+            made["exports"] = [entry_of(one) for one in self._exports]
         return self.settings() | {"made": made}
 
     def resume(self, state: Mapping[str, Any]) -> None:
@@ -169,7 +172,7 @@ class DatasetPage(PageWidget):
             return
 
         def take(answer: tuple[Path, Dataset]) -> None:
-            self._take_read(answer)
+            self._take_dataset(*answer)
             self._made_with = self._settings() if made.get("current") else ("others",)
             self._show_exports_again(made.get("exports") or (), answer[1])
             self._show_result()
@@ -179,12 +182,11 @@ class DatasetPage(PageWidget):
 
     def _show_exports_again(self, kept: Sequence[Mapping[str, str]], dataset: Dataset) -> None:
         """List the exports of a project that are still where they were, and note the others."""
-        for one in kept:
-            key, folder = one["key"], Path(one["folder"])
-            if key in EXPORTERS and fingerprint(folder / RECORD) == one["fingerprint"] != "":
-                command = load_command(EXPORTERS[key], folder, dataset)
-                self._exports.append(ExportResult(key, folder, (), command))
+        for entry in kept:
+            if (found := export_of(entry, dataset)) is not None:
+                self._exports.append(found)
             else:
+                folder = entry["folder"]
                 note = tr("The export in {folder} has been moved or changed since.", folder=folder)
                 self._context.toast.note(note)
         self.exports.show_exports(self._exports)
@@ -222,8 +224,7 @@ class DatasetPage(PageWidget):
             self._show_stopped if to_build else None,
             FIND,
         )
-        if to_build:
-            self._task = task
+        self._task = task if to_build else self._task
 
     def build_in(self, folder: Path, overwrite: bool = False, exports: Path | None = None) -> None:
         """Coarsen the representatives, which are found where there are none, and write the dataset.
@@ -234,7 +235,7 @@ class DatasetPage(PageWidget):
         if self.sizes.sizing() is None:
             return
         every = self.representatives.every
-        self._begin(folder)
+        self.result.begin(folder)
         if not every and (self._chosen is None or survey_now is None):
             self._find(to_build=(folder, overwrite, exports))
             return
@@ -258,17 +259,6 @@ class DatasetPage(PageWidget):
             queue=BUILD,
         )
 
-    def _begin(self, target: Path) -> None:
-        """Show that something is being written, until it is or is not."""
-        self._target = str(target)
-        self.result.show_task(None)
-        self._show_record(self.result.record)
-
-    def _show_record(self, record: ResultRecord) -> None:
-        if self._target:
-            record = replace(record, state=ResultState.RUNNING, note=self._target)
-        self.result.show_record(record)
-
     def _follow(self) -> None:
         """Show how far a build or an export is."""
         for task in self._context.session.tasks:
@@ -289,7 +279,7 @@ class DatasetPage(PageWidget):
 
     def _show_stopped(self) -> None:
         """Show what was there before a build or an export was stopped: nothing is written before its end."""
-        self._target = ""
+        self.result.end()
         if self._dataset is None:
             self._forget_dataset()
         else:
@@ -301,7 +291,7 @@ class DatasetPage(PageWidget):
             self.result.show_record(replace(before, note=f"{note} {before.note}"))
 
     def _show_failure(self, failure: Failed) -> None:
-        self._target = ""
+        self.result.end()
         self._show_result()
         self.result.show_record(failed_record(self.result.record, failure.sentence))
         self._context.toast.problem(failure.sentence, failure.details)
@@ -314,7 +304,10 @@ class DatasetPage(PageWidget):
 
     def open_folder(self, folder: Path) -> None:
         self._context.start(
-            tr("Reading the dataset"), Job(open_dataset_folder, (folder,)), self._take_read, queue=BUILD
+            tr("Reading the dataset"),
+            Job(open_dataset_folder, (folder,)),
+            lambda answer: self._take_dataset(*answer),
+            queue=BUILD,
         )
 
     def open_path(self, path: Path) -> None:
@@ -353,15 +346,10 @@ class DatasetPage(PageWidget):
         """Write the selected formats, each into its own folder below `folder`."""
         if self._folder is None or not self.targets.chosen():
             return
-        arguments = (
-            self._folder,
-            self.targets.chosen(),
-            folder,
-            self.targets.options(),
-            self.targets.consent(),
-        )
+        targets = self.targets
+        arguments = (self._folder, targets.chosen(), folder, targets.options(), targets.consent())
         self._context.remember("place", str(folder))
-        self._begin(folder)
+        self.result.begin(folder)
         self._task = self._context.start(
             tr("Exporting"),
             Job(export_dataset_folder, arguments),
@@ -381,7 +369,7 @@ class DatasetPage(PageWidget):
         now = tuple(entry.particle for entry in self._context.session.particles)
         if now != self._particles:
             if self._to_build is not None:
-                self._target = ""
+                self.result.end()
             self._particles, self._survey, self._chosen, self._to_build = now, None, None, None
             self._context.stop(FIND)
             self.quality.show_curve(None)
@@ -429,7 +417,7 @@ class DatasetPage(PageWidget):
         self._dataset = self._folder = self._made_with = None
         self._exports = []
         self.exports.show_exports(())
-        self._show_record(ResultRecord(note=tr("No dataset of these particles has been written yet.")))
+        self.result.show_record(ResultRecord(note=tr("No dataset of these particles has been written yet.")))
         self._enable_export()
 
     def _show_chosen(self) -> None:
@@ -480,7 +468,7 @@ class DatasetPage(PageWidget):
         return [singleton_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
     def _take_built(self, built: DatasetBuildResult, exports: Path | None = None) -> None:
-        self._target = ""
+        self.result.end()
         self._take_dataset(built.folder, built.dataset)
         self._made_with = self._settings()
         self._show_result()
@@ -490,9 +478,6 @@ class DatasetPage(PageWidget):
         self._enable_export()
         if exports is not None:
             self.export_to(exports)
-
-    def _take_read(self, answer: tuple[Path, Dataset]) -> None:
-        self._take_dataset(*answer)
 
     def _take_dataset(self, folder: Path, dataset: Dataset) -> None:
         self._folder, self._dataset = folder, dataset
@@ -506,15 +491,9 @@ class DatasetPage(PageWidget):
 
     def _filling(self, options: ExportOptions) -> CylinderFilling:
         """The particles of a script that fills a cylinder with the dataset."""
-        if self._dataset is not None:
-            sizes = [one.sizes for one in self._dataset.representatives]
-            return cylinder_filling(self._dataset.class_weights("number").tolist(), sizes, options)
-        classes = self._classes_to_build
-        weights = np.array([one.weight for one in classes])
         by_classes = self._chosen is not None and not self.representatives.every
-        if by_classes and self.representatives.request().weighting == "volume":
-            weights /= [one.sizes.mean_cube() for one in classes]
-        return cylinder_filling(weights.tolist(), [one.sizes for one in classes], options)
+        by_volume = by_classes and self.representatives.request().weighting == "volume"
+        return filling_of(self._dataset, self._classes_to_build, options, by_volume=by_volume)
 
     def _settings(self) -> tuple[Any, ...]:
         """What a dataset that is built now depends on, besides the particles and their number."""
@@ -536,7 +515,7 @@ class DatasetPage(PageWidget):
         values = (str(len(self._dataset)), str(len(self._exports)))
         state = ResultState.CURRENT if current else ResultState.STALE
         origin = provenance_text(self._dataset)
-        self._show_record(ResultRecord(values, origin, state=state, note=written))
+        self.result.show_record(ResultRecord(values, origin, state=state, note=written))
 
     def _report_problems(self, problems: Sequence[str]) -> None:
         if problems:
@@ -547,7 +526,7 @@ class DatasetPage(PageWidget):
             self._context.toast.note(tr("The dataset is valid."))
 
     def _take_exports(self, done: Sequence[ExportResult]) -> None:
-        self._target = ""
+        self.result.end()
         self._exports = list(done)
         self.exports.show_exports(done)
         self._lower.setCurrentIndex(1)

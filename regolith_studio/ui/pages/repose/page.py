@@ -15,13 +15,9 @@ from regolith_studio.dem.case import PreparedCase, ScalingReport, scaling_report
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import (
-    FINAL,
     RunSummary,
     find_runs,
-    read_final_state,
     read_run,
-    read_shapes,
-    snapshot_files,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
@@ -281,7 +277,7 @@ class ReposePage(PageWidget):
             self._show_nothing(note)
             self.tabs.setCurrentIndex(0)
             folder = new_folder(self._folder, f"{dataset.name}-{request.case.n_particles}")
-            self._start_preview(dataset, request)
+            self._preview()
             self.run.start(
                 tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
                 Job(repose_steps, (dataset, folder, request)),
@@ -372,24 +368,26 @@ class ReposePage(PageWidget):
         self._later.start()
 
     def _preview(self) -> None:
-        dataset = self.setup.dataset
-        if dataset is None:
+        self._draw_particles(self._show_preview, self._refuse)
+
+    def _draw_particles(
+        self,
+        take: Callable[[ReposeRequest, PreparedCase, ParticleState], None],
+        refuse: Callable[[str], None],
+    ) -> None:
+        """Draw the particles of the set-up: its consequences, and the shapes that a run shows."""
+        if self.setup.dataset is None:
             return
         try:
             request = self.setup.request()
         except RegolithError as error:
-            self._refuse(str(error))
+            refuse(str(error))
             return
-        self._start_preview(dataset, request)
-
-    def _start_preview(self, dataset: Path, request: ReposeRequest) -> None:
-        """Draw the particles of a request: its consequences, and the shapes that a run shows."""
-        job = Job(preview_repose, (dataset, request))
         self._context.start(
             tr("Drawing particles"),
-            job,
-            lambda drawn: self._show_preview(request, *drawn),
-            failed=lambda each: self._refuse(each.sentence),
+            Job(preview_repose, (self.setup.dataset, request)),
+            lambda drawn: take(request, *drawn),
+            failed=lambda each: refuse(each.sentence),
             queue=PREVIEW,
             repeats=True,
         )
@@ -437,28 +435,13 @@ class ReposePage(PageWidget):
 
     def _prepare_behind(self, run: RunSummary) -> None:
         """Draw the particles of the set-up for the times at the buttons; the run that is shown stays."""
-        if self.setup.dataset is None:
-            return
-        try:
-            request = self.setup.request()
-        except RegolithError as error:
-            self._note_problem(str(error))
-            return
 
-        def take(drawn: tuple[PreparedCase, ParticleState]) -> None:
-            self._take_prepared(request, drawn[0])
+        def take(request: ReposeRequest, prepared: PreparedCase, _pile: ParticleState) -> None:
+            self._take_prepared(request, prepared)
             if self._shown_run == run.folder:
                 self.limits.show_scale(scale_of_run(run.document), self._seconds)
 
-        job = Job(preview_repose, (self.setup.dataset, request))
-        self._context.start(
-            tr("Drawing particles"),
-            job,
-            take,
-            failed=lambda each: self._note_problem(each.sentence),
-            queue=PREVIEW,
-            repeats=True,
-        )
+        self._draw_particles(take, self._note_problem)
 
     def _note_problem(self, problem: str) -> None:
         self.setup.show_consequences([], problem)
@@ -503,23 +486,14 @@ class ReposePage(PageWidget):
             self._show_run(self.studies.summary(run))
 
     def _show_run(self, run: RunSummary) -> None:
-        case = run.document["case"]
         try:
-            shapes = read_shapes(run.folder)
-            test = LiftingCylinderTest(**case["test"])
-            files = snapshot_files(run.folder)
-            final = run.folder / FINAL
-            self.player.set_scene(shapes, case["shapes"] == "spheres", test)
-            self.player.show_run(
-                [*files, final] if final.exists() else files, run.folder.name, checks_text(run)
-            )
-            pile = read_final_state(final) if final.exists() else None
+            pile = self.player.show_folder(run, checks_text(run))
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
         self._imported = None
         self._origin, self._notes = run_origin(run.document), run_notes(run)
-        if pile is not None and case.get("drum"):
+        if pile is not None and run.document["case"].get("drum"):
             self._drum = run
             self.player.frame_heap(pile)
             self._show_drum()

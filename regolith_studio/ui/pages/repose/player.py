@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
-from regolith_studio.dem.run_io import read_final_state
+from regolith_studio.dem.run_io import FINAL, RunSummary, read_final_state, read_shapes, snapshot_files
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.geometry.arrays import FloatArray
@@ -279,13 +279,18 @@ class RunPlayer(StepPlayer):
             self._look_at_cylinder(max(top, self._test.height))
         self._show(pile)
 
-    def show_run(self, files: Sequence[Path], title: str, detail: str = "") -> None:
-        """Set the snapshots of a run and show the last one."""
+    def show_folder(self, run: RunSummary, detail: str) -> ParticleState | None:
+        """Set the shapes and snapshots of a run, and show the last one: the heap, where it has come to it."""
+        case, files, final = run.document["case"], snapshot_files(run.folder), run.folder / FINAL
+        files += [final] if final.exists() else []
+        shapes = read_shapes(run.folder)
+        self.set_scene(shapes, case["shapes"] == "spheres", LiftingCylinderTest(**case["test"]))
         self.pause()
-        self.frame.set_texts(title, detail)
-        self._set_files(list(files))
+        self.frame.set_texts(run.folder.name, detail)
+        self._set_files(files)
         if files:
             self._show_file(len(files) - 1)
+        return read_final_state(final) if final.exists() else None
 
     def play_or_report(self, report: Callable[[str], object]) -> None:
         """Play or pause, or report that there is no run."""
