@@ -17,7 +17,7 @@ from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution,
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.io.tables import Column, Table
 
 NEEDED = ("volume", "sphericity", "aspect_ratio", "min_diameter", "convex_hull_volume")
@@ -315,7 +315,7 @@ def swap_medoids(table: FloatArray, weights: FloatArray, chosen: IntArray) -> in
     return swaps
 
 
-@kernel
+@inner_kernel
 def _two_nearest(
     table: FloatArray,
     weights: FloatArray,

@@ -16,7 +16,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.feret import feret_max, feret_min, length_width_thickness
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.geometry.mesh import Mesh, ellipsoid_area, equal_ellipsoid, volume_and_area
 from regolith_studio.geometry.oriented_box import OrientedBox, heuristic_box, minimum_volume_box
 from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
@@ -458,7 +458,7 @@ def _incidence(points: FloatArray, faces: IntArray) -> float:
     return total
 
 
-@kernel
+@inner_kernel
 def _potential(
     a: tuple[float, float, float],
     b: tuple[float, float, float],

@@ -9,7 +9,7 @@ from scipy.spatial.distance import cdist
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel_noalloc
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.minimum_box.hull_topology import extreme_vertices_of_each, facets_of_hull
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
@@ -63,7 +63,7 @@ def _width_between_edges(start: FloatArray, way: FloatArray, sides: FloatArray) 
     return width
 
 
-@kernel_noalloc
+@inner_kernel
 def _width_between(start: FloatArray, way: FloatArray, sides: FloatArray, i: int, j: int) -> float:
     """Distance between the parallel planes through two edges, infinite unless both planes are tangent."""
     one, two = row(way, i), row(way, j)
@@ -144,7 +144,7 @@ def _fill_bounds(points: FloatArray, cells: IntArray, bounds: FloatArray) -> Non
             bounds[c, 7] = max(bounds[c, 7], length(offset))
 
 
-@inline_kernel
+@inner_kernel
 def _reach(bounds: FloatArray, c: int, direction: Vector) -> float:
     """How far a cell reaches from its centre along a direction of length one."""
     # With height h along d and radius R no point is farther along u than h |<d, u>| + R sqrt(1 - <d, u>^2).
@@ -153,7 +153,7 @@ def _reach(bounds: FloatArray, c: int, direction: Vector) -> float:
     return float(min(bounds[c, 7], tilted))
 
 
-@inline_kernel
+@inner_kernel
 def _bound(bounds: FloatArray, a: int, b: int) -> float:
     """Square of a distance that no two points of two cells exceed."""
     between = mixed(row(bounds, a), 1.0, row(bounds, b), -1.0)
@@ -196,7 +196,7 @@ def _longest(points: FloatArray, cells: IntArray, bounds: FloatArray, waiting: I
     return float(np.sqrt(longest))
 
 
-@inline_kernel
+@inner_kernel
 def _longest_between(points: FloatArray, cells: IntArray, a: int, b: int) -> float:
     """Square of the largest distance between points of two leaves."""
     longest = 0.0
@@ -207,7 +207,7 @@ def _longest_between(points: FloatArray, cells: IntArray, a: int, b: int) -> flo
     return longest
 
 
-@inline_kernel
+@inner_kernel
 def _first_guess(points: FloatArray) -> float:
     """Square of the distance of a point from the farthest one, taken from one to the next a few times."""
     longest, start = 0.0, 0

@@ -9,7 +9,7 @@ from scipy.optimize import linprog
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.geometry.vectors import Vector
 
 BLOCK = 512
@@ -41,7 +41,7 @@ def exits(
             plane[start + j] = int(place[j])
 
 
-@kernel_noalloc
+@inner_kernel
 def _compare(
     coordinates: FloatArray, dual: Vector, number: float, count: int, largest: FloatArray, place: FloatArray
 ) -> None:

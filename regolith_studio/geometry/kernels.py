@@ -31,6 +31,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core.caching import FunctionCache
+from numba.core.registry import CPUDispatcher
 from platformdirs import user_cache_path
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -52,7 +53,7 @@ _FUNCTION_CACHE: Any = FunctionCache  # numba has no types
 _PACKAGE = Path(__file__).resolve().parents[1]
 _CODE = "*-" + "[0-9a-f]" * 16  # folders of machine code; NUMBA_CACHE_DIR may hold those of other programs
 # The first begins the mark of `kernel_noalloc`, too.
-_MARKS = (b"@kernel", b"@inline_kernel")
+_MARKS = (b"@kernel", b"@inner_kernel")
 
 
 def kernel(function: F) -> F:
@@ -73,9 +74,22 @@ def kernel_noalloc(function: F) -> F:
     return _compiled(function, _NO_COUNTING)
 
 
-def inline_kernel(function: F) -> F:
-    """Compile a small function of innermost loops: only kernels call it, and LLVM inlines it there."""
-    return cast(F, numba.njit(**_OPTIONS, **_NO_COUNTING)(function))
+def inner_kernel(function: F) -> F:
+    """Compile a function that only kernels call, and that allocates no memory.
+
+    Numba makes no entry for Python, which takes a tenth of the time of compilation: a named tuple of arrays
+    is taken apart there, array by array. Python that calls such a kernel runs the function as it is written.
+    """
+    compiled: Any = _compiled(function, _NO_COUNTING | {"no_cpython_wrapper": True})
+    compiled.__class__ = _InnerKernel
+    return cast(F, compiled)
+
+
+class _InnerKernel(CPUDispatcher):
+    """Numba's dispatcher of a kernel without an entry: to jump there would end the interpreter."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.py_func(*arguments)
 
 
 def kept_in_thread(make: Callable[[int], T]) -> Callable[[int], T]:

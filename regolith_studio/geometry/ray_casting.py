@@ -28,7 +28,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.geometry.kernels import inline_kernel, kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
@@ -86,7 +86,7 @@ def sign_of_cross_product(a: FloatArray, b: FloatArray, axis: int) -> int:
     return _sign(parts, count)
 
 
-@kernel
+@inner_kernel
 def _add_product(parts: FloatArray, count: int, x: float, y: float, z: float) -> int:
     """Add x * y * z to an expansion of `count` parts; returns how many it has now."""
     high, low = _product(x, y)
@@ -97,7 +97,7 @@ def _add_product(parts: FloatArray, count: int, x: float, y: float, z: float) ->
     return count
 
 
-@kernel
+@inner_kernel
 def _product(x: float, y: float) -> tuple[float, float]:
     """x * y as a rounded product and what the rounding lost."""
     product = x * y
@@ -108,7 +108,7 @@ def _product(x: float, y: float) -> tuple[float, float]:
     return product, lost
 
 
-@kernel
+@inner_kernel
 def _add(parts: FloatArray, count: int, value: float) -> int:
     """Grow an expansion by one float: its parts stay free of overlap and rise in magnitude."""
     carried = value
@@ -121,7 +121,7 @@ def _add(parts: FloatArray, count: int, value: float) -> int:
     return count + 1
 
 
-@kernel
+@inner_kernel
 def _sign(parts: FloatArray, count: int) -> int:
     for i in range(count - 1, -1, -1):
         if parts[i] != 0.0:
@@ -181,19 +181,19 @@ def _fill_bins(directions: FloatArray, rows: int, columns: int, rays: IntArray, 
         filled[bins[k]] += 1
 
 
-@kernel
+@inner_kernel
 def row_of(z: float, rows: int) -> int:
     """Row of height `z`, which may lie outside -1..1."""
     return min(rows - 1, max(0, int((z + 1.0) * 0.5 * rows)))
 
 
-@kernel
+@inner_kernel
 def column_of(longitude: float, columns: int) -> int:
     """Column of a longitude between -pi and pi; outside them, columns count on."""
     return int(np.floor((longitude / (2.0 * np.pi) + 0.5) * columns))
 
 
-@kernel
+@inner_kernel
 def bins_around(
     a: FloatArray, b: FloatArray, c: FloatArray, rows: int, columns: int
 ) -> tuple[int, int, int, int]:
@@ -360,7 +360,7 @@ def _cast(
     return n
 
 
-@inline_kernel
+@inner_kernel
 def _least(
     directions: FloatArray,
     ray: int,

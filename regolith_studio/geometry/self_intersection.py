@@ -4,7 +4,7 @@ import numpy as np
 from numba import int64
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_integers
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 
 # 16 MB of counts.
 MAX_CELLS = 1 << 21
@@ -109,7 +109,7 @@ def mark_crossings(
     return count  # type: ignore[return-value]
 
 
-@kernel
+@inner_kernel
 def cross(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> bool:
     """Whether an edge of one triangle passes through the other; shared corners are left out."""
     for axis in range(3):
@@ -128,7 +128,7 @@ def cross(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> b
     return pierces(a, b, face_a, face_b) or pierces(b, a, face_b, face_a)
 
 
-@kernel
+@inner_kernel
 def pierces(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> bool:
     """Whether an edge of triangle `a` that has no corner in common with `b` passes through `b`."""
     ux, uy, uz = b[1, 0] - b[0, 0], b[1, 1] - b[0, 1], b[1, 2] - b[0, 2]

@@ -13,7 +13,7 @@ from math import isqrt
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 
 # SHTOOLS has the same transforms, but lets FFTW choose its plans by timing (``FFTW_MEASURE``): the last bits
 # of a result then depend on the process and on the load of the machine (one in seven processes differed).
@@ -36,7 +36,7 @@ def legendre_factors(l_max: int) -> FloatArray:
     return factors
 
 
-@kernel
+@inner_kernel
 def fill_legendre(cosine: float, sine: float, factors: FloatArray, p: FloatArray) -> None:
     """Orthonormal associated Legendre functions into `p` (l_max + 1, l_max + 1), index [l, m], m <= l.
 

@@ -19,7 +19,7 @@ from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.messages import N_
 
-TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 4, "annealing": 10, "exact": 105}
+TASKS = {"read": 16, "fit": 30, "describe": 46, "quadric": 4, "annealing": 11, "exact": 110}
 _METHODS = (*TASKS, "compound")
 """Reading to measuring, then the methods of coarsening: each needs what is before it."""
 TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3, "compound": 59}

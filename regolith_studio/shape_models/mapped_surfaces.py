@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import SphereGrid, ring_basis, sphere_grid
 from regolith_studio.messages import N_
@@ -92,7 +92,7 @@ def mapped_radii(
             radii[n, k] = _cubic(table, i, j, row - i, column - j) / length
 
 
-@kernel
+@inner_kernel
 def _cubic(table: Tables, i: int, j: int, s: float, t: float) -> float:
     """Value at (i + s, j + t) of a table with a margin of two, 0 <= s, t <= 1."""
     total = 0.0

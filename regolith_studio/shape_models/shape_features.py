@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import SphereGrid, harmonics, sphere_grid
 from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, principal_axes
@@ -103,7 +103,7 @@ class HullGrid:
         return np.log(hulls) - logs, hulls
 
 
-@kernel
+@inner_kernel
 def _max_of_five(a: float, b: float, c: float, d: float, e: float) -> float:
     left = a if a > b else b  # noqa: FURB136  vectorised, as below
     right = c if c > d else d  # noqa: FURB136

@@ -174,8 +174,26 @@ ROOT = Path(kernels.__file__).resolve().parents[2]
 NUMBERS = re.compile(r"None|(int|float|bool)|tuple\[(int|float|bool)(, (int|float|bool))*\]")
 
 
+@kernels.inner_kernel
+def half(x: int) -> float:
+    """Half of a number."""
+    return x / 2
+
+
+@kernels.kernel
+def quarter(x: int) -> float:
+    """Half of a half."""
+    return half(x) / 2
+
+
+def test_that_a_kernel_without_an_entry_is_compiled_for_kernels_and_runs_as_written_for_python() -> None:
+    assert quarter(7) == 1.75
+    assert half(7) == 3.5
+    assert len(half.signatures) == 1  # type: ignore[attr-defined]
+
+
 @pytest.mark.slow
-def test_that_kernels_called_by_python_return_numbers_only() -> None:
+def test_that_kernels_called_by_python_return_numbers_only_and_have_an_entry() -> None:
     """See :func:`regolith_studio.geometry.kernels.kernel`; kernels called by kernels may return anything."""
     trees = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts): ast.parse(path.read_text("utf-8"))
@@ -194,16 +212,31 @@ def test_that_kernels_called_by_python_return_numbers_only() -> None:
         for known in [kernels_known_in(module, tree, returned)]
         for part in tree.body
         if not (isinstance(part, ast.FunctionDef) and is_kernel(part))
+        for own in [own_names(part)]
         for each in ast.walk(part)
-        if isinstance(each, ast.Name) and each.id in known
+        if isinstance(each, ast.Name) and each.id in known and each.id not in own
     }
     assert {key: returned[key] for key in called if not NUMBERS.fullmatch(returned[key])} == {}
+    slow = {
+        key
+        for key in called
+        if type(getattr(importlib.import_module(key[0]), key[1])) is kernels._InnerKernel
+    }
+    assert slow == set()
 
 
 def is_kernel(function: ast.FunctionDef) -> bool:
     """Whether a function is compiled."""
     names = {ast.unparse(each) for each in function.decorator_list}
-    return bool(names & {"kernel", "kernel_noalloc", "inline_kernel"})
+    return bool(names & {"kernel", "kernel_noalloc", "inner_kernel"})
+
+
+def own_names(part: ast.stmt) -> set[str]:
+    """Parameters and variables, which may be called as a kernel is."""
+    stored = {
+        each.id for each in ast.walk(part) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+    }
+    return stored | {each.arg for each in ast.walk(part) if isinstance(each, ast.arg)}
 
 
 def kernels_known_in(

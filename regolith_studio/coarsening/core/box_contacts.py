@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 ROW = 13
@@ -57,7 +57,7 @@ class Pose(NamedTuple):
     free: Vector
 
 
-@kernel_noalloc
+@inner_kernel
 def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: FloatArray) -> None:
     """Fill a row of contacts for a box by its axes, one a row of `frame`; `ties` (3, 3) is scratch."""
     contact[0] = 0
@@ -91,7 +91,7 @@ def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: Fl
         contact[0], contact[7 + 2 * n], contact[8 + 2 * n] = n + 1, most_side, most_vertex
 
 
-@kernel_noalloc
+@inner_kernel
 def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: float) -> bool:
     """Turn the axes in `frame` until all conditions hold, by Newton's method; False where they cannot.
 
@@ -113,7 +113,7 @@ def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: 
     return False
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_points(vertices: FloatArray, contact: IntArray, points: FloatArray) -> None:
     """Coordinates of the vertices of a row of contacts, shape (9, 3): six ends of axes, three tied."""
     for i in range(9):
@@ -122,7 +122,7 @@ def fill_points(vertices: FloatArray, contact: IntArray, points: FloatArray) -> 
             points[i, c] = vertices[v, c] if i < 6 + contact[0] else 0.0
 
 
-@kernel_noalloc
+@inner_kernel
 def pose_of(points: FloatArray, contact: IntArray, frame: FloatArray) -> Pose:
     """Everything about a box that follows from its axes and the vertices that it touches."""
     axes = (row(frame, 0), row(frame, 1), row(frame, 2))
@@ -164,13 +164,13 @@ def pose_of(points: FloatArray, contact: IntArray, frame: FloatArray) -> Pose:
     return Pose(axes, spans, extents, slopes, (one, two, bend), residuals, free)
 
 
-@kernel_noalloc
+@inner_kernel
 def tied_axis(contact: IntArray, tie: int, frame: FloatArray) -> Vector:
     """Axis of the side in which a tie lies."""
     return row(frame, contact[7 + 2 * tie] // 2 if tie < contact[0] else 0)
 
 
-@kernel_noalloc
+@inner_kernel
 def tied_pair(points: FloatArray, contact: IntArray, tie: int) -> Vector:
     """From the vertex at the end of the axis to the one that ties with it; zero for a tie that is none."""
     if tie >= contact[0]:
@@ -178,7 +178,7 @@ def tied_pair(points: FloatArray, contact: IntArray, tie: int) -> Vector:
     return mixed(row(points, 6 + tie), 1.0, row(points, contact[7 + 2 * tie]), -1.0)
 
 
-@kernel_noalloc
+@inner_kernel
 def solved(rows: tuple[Vector, Vector, Vector], right: Vector) -> tuple[bool, Vector]:
     """Solution w of <row, w> = right for three rows; False where they are nearly dependent."""
     first, second, third = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
@@ -189,7 +189,7 @@ def solved(rows: tuple[Vector, Vector, Vector], right: Vector) -> tuple[bool, Ve
     return True, w
 
 
-@kernel_noalloc
+@inner_kernel
 def rotate(frame: FloatArray, turn: Vector) -> None:
     """Rotate the axes in `frame` by the angle and about the direction of `turn`."""
     angle = length(turn)
@@ -205,7 +205,7 @@ def rotate(frame: FloatArray, turn: Vector) -> None:
             frame[k, c] = y[c]
 
 
-@kernel_noalloc
+@inner_kernel
 def rested(
     vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray, farthest: float
 ) -> bool:
@@ -229,7 +229,7 @@ def rested(
     return False
 
 
-@kernel_noalloc
+@inner_kernel
 def farthest_outside(vertices: FloatArray, contact: IntArray, frame: FloatArray) -> tuple[int, int]:
     """Side beyond which a vertex lies farthest outside, and that vertex; -1 where none does."""
     most, most_side, most_vertex = OUTSIDE, -1, -1
@@ -245,7 +245,7 @@ def farthest_outside(vertices: FloatArray, contact: IntArray, frame: FloatArray)
     return most_side, most_vertex
 
 
-@kernel_noalloc
+@inner_kernel
 def walk_to_minimum(
     vertices: FloatArray,
     contact: IntArray,
@@ -286,7 +286,7 @@ def walk_to_minimum(
     return False
 
 
-@kernel_noalloc
+@inner_kernel
 def gain_ties(vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray) -> bool:
     """Turn a box without ties the way that it becomes smaller until two or three are there; False for less.
 
@@ -311,7 +311,7 @@ def gain_ties(vertices: FloatArray, contact: IntArray, frame: FloatArray, points
     return True
 
 
-@kernel_noalloc
+@inner_kernel
 def farthest_vertex(vertices: FloatArray, frame: FloatArray, side: int) -> int:
     """The vertex that lies farthest beyond a side of a box."""
     x, at, most = row(frame, side // 2), 0, -np.inf
@@ -323,7 +323,7 @@ def farthest_vertex(vertices: FloatArray, frame: FloatArray, side: int) -> int:
     return at
 
 
-@kernel_noalloc
+@inner_kernel
 def downhill(pose: Pose, n: int, released: int) -> Vector:
     """Turn along which the volume falls fastest while n ties hold, all but the one that is released."""
     slope = mixed(mixed(pose.slopes[0], 1.0, pose.slopes[1], 1.0), 1.0, pose.slopes[2], 1.0)
@@ -339,7 +339,7 @@ def downhill(pose: Pose, n: int, released: int) -> Vector:
     return turn
 
 
-@kernel_noalloc
+@inner_kernel
 def next_contact(
     vertices: FloatArray, contact: IntArray, frame: FloatArray, turn: Vector
 ) -> tuple[float, int, int]:
@@ -364,7 +364,7 @@ def next_contact(
     return soonest, next_side, next_vertex
 
 
-@kernel_noalloc
+@inner_kernel
 def tie_to_release(pose: Pose, contact: IntArray) -> tuple[int, bool]:
     """The tie that a turn to a smaller box gives up, and whether the vertex at the end of the axis leaves.
 
@@ -386,7 +386,7 @@ def tie_to_release(pose: Pose, contact: IntArray) -> tuple[int, bool]:
     return found, at_end
 
 
-@kernel_noalloc
+@inner_kernel
 def tie_shares(pose: Pose, contact: IntArray) -> Vector:
     """Share of each tied vertex, against that at the end of its axis, in the mixture of slopes that vanishes.
 
@@ -406,7 +406,7 @@ def tie_shares(pose: Pose, contact: IntArray) -> Vector:
     )
 
 
-@kernel_noalloc
+@inner_kernel
 def signed_extent(pose: Pose, contact: IntArray, tie: int) -> float:
     """Extent along the axis of a tie, less than 0 for its upper side; 0 for a tie that is none."""
     if tie >= contact[0]:
@@ -415,7 +415,7 @@ def signed_extent(pose: Pose, contact: IntArray, tie: int) -> float:
     return pose.extents[side // 2] * (-1.0 if side % 2 == 0 else 1.0)
 
 
-@kernel_noalloc
+@inner_kernel
 def tie_to_tip(
     vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray, pose: Pose
 ) -> int:
@@ -455,7 +455,7 @@ def tie_to_tip(
     return NONE
 
 
-@kernel_noalloc
+@inner_kernel
 def tied_to_one_side(contact: IntArray) -> tuple[int, int]:
     """The two ties of a side on a facet; NONE where no side is on one."""
     for first in range(contact[0]):
@@ -465,7 +465,7 @@ def tied_to_one_side(contact: IntArray) -> tuple[int, int]:
     return NONE, NONE
 
 
-@kernel_noalloc
+@inner_kernel
 def beyond(vertices: FloatArray, a: int, b: int, c: int, axis: Vector, at: Vector) -> float:
     """Distance of a point in the plane of three vertices from the edge (a, b), beyond it as seen from c."""
     start = row(vertices, a)
@@ -475,7 +475,7 @@ def beyond(vertices: FloatArray, a: int, b: int, c: int, axis: Vector, at: Vecto
     return across if dot(out, mixed(row(vertices, c), 1.0, start, -1.0)) < 0.0 else -across
 
 
-@kernel_noalloc
+@inner_kernel
 def change_tie(
     vertices: FloatArray, contact: IntArray, frame: FloatArray, pose: Pose, tie: int, at_end: bool
 ) -> bool:

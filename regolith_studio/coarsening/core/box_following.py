@@ -4,14 +4,14 @@ import numpy as np
 
 from regolith_studio.coarsening.core.box_contacts import pose_of, solved, tied_axis
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, mixed, row
 
 ALIKE = 0.985
 """Cosine of the largest angle between the axes of one box before and after a step."""
 
 
-@kernel_noalloc
+@inner_kernel
 def extent_forces(points: FloatArray, contact: IntArray, frame: FloatArray, forces: FloatArray) -> Vector:
     """Extents of a box at rest; `forces` takes d log(extent k) / d(vertex i), shape (3, 9, 3).
 
@@ -46,7 +46,7 @@ def extent_forces(points: FloatArray, contact: IntArray, frame: FloatArray, forc
     return pose.extents
 
 
-@kernel_noalloc
+@inner_kernel
 def _add_pair_force(forces: FloatArray, k: int, far: int, near: int, direction: Vector, size: float) -> None:
     """Pull vertex `far` along a direction and `near` against it."""
     for c in range(3):
@@ -54,7 +54,7 @@ def _add_pair_force(forces: FloatArray, k: int, far: int, near: int, direction: 
         forces[k, near, c] -= size * direction[c]
 
 
-@kernel_noalloc
+@inner_kernel
 def update_vertex_ids(
     vertices: FloatArray,
     contact: IntArray,
@@ -87,7 +87,7 @@ def update_vertex_ids(
         contact[8 + 2 * t] = 0
 
 
-@kernel_noalloc
+@inner_kernel
 def is_touched(contact: IntArray, side: int, count: int, v: int) -> bool:
     """Whether a vertex is among the first vertices of a row of contacts in a side."""
     touched = count >= 6 and contact[1 + side] == v
@@ -96,7 +96,7 @@ def is_touched(contact: IntArray, side: int, count: int, v: int) -> bool:
     return touched
 
 
-@kernel_noalloc
+@inner_kernel
 def likeness_of(one: FloatArray, two: FloatArray) -> float:
     """Cosine of the largest angle between the axes of two frames (3, 3), in any order and direction."""
     least = 1.0

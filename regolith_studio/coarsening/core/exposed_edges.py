@@ -9,14 +9,14 @@ import numpy as np
 
 from regolith_studio.coarsening.core.polyhedron_measures import add_force
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 PARALLEL = 1e-9
 """Planes whose normals have a shorter vector product do not intersect."""
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_exposed_edges(
     normals: FloatArray,
     offsets: FloatArray,
@@ -75,7 +75,7 @@ def fill_exposed_edges(
     return count
 
 
-@kernel_noalloc
+@inner_kernel
 def part_of(first: IntArray, plane: int) -> int:
     """The part that a plane belongs to."""
     part = 0
@@ -84,7 +84,7 @@ def part_of(first: IntArray, plane: int) -> int:
     return part
 
 
-@kernel_noalloc
+@inner_kernel
 def _common_point(
     normals: FloatArray, offsets: FloatArray, a: int, b: int, line: Vector, squared: float
 ) -> Vector:
@@ -98,7 +98,7 @@ def _common_point(
     return mixed(foot, 1.0, cross(n, line), (offsets[b] - dot(m, foot)) / squared)
 
 
-@kernel_noalloc
+@inner_kernel
 def clipped(
     normals: FloatArray,
     offsets: FloatArray,
@@ -129,7 +129,7 @@ def clipped(
     return low, high
 
 
-@kernel_noalloc
+@inner_kernel
 def _add_outside(
     normals: FloatArray,
     offsets: FloatArray,
@@ -178,7 +178,7 @@ def _add_outside(
     return count
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_exposed_areas(
     normals: FloatArray,
     offsets: FloatArray,
@@ -218,7 +218,7 @@ NO_AREA = 1e-12
 """Facets exposed by less have no centroid of their own."""
 
 
-@kernel_noalloc
+@inner_kernel
 def add_exposed_surface_charges(
     normals: FloatArray,
     ends: FloatArray,

@@ -5,7 +5,7 @@ import numpy as np
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 MIN_CUT = 3e-3
@@ -148,7 +148,7 @@ def _below(depth: float, room: float) -> float:
     return max(depth * room, min(MIN_CUT, DEEPEST * room))
 
 
-@kernel_noalloc
+@inner_kernel
 def _overhang(position: Vector, directions: FloatArray, first: IntArray, distance: FloatArray) -> float:
     """How far a point lies beyond the particle's surface, along the ray nearest to it."""
     nearest, at = -np.inf, 0
@@ -160,7 +160,7 @@ def _overhang(position: Vector, directions: FloatArray, first: IntArray, distanc
     return float(length(position) - surface)
 
 
-@kernel_noalloc
+@inner_kernel
 def _corner_normal(normals: FloatArray, triples: IntArray, v: int) -> Vector:
     """Mean direction of the three planes of a corner."""
     normal = mixed(row(normals, triples[v, 0]), 1.0, row(normals, triples[v, 1]), 1.0)

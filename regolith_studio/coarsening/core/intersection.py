@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kept_in_thread, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kept_in_thread
 from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
 REACH = 40.0
@@ -50,7 +50,7 @@ def workspace_for(n: int) -> IntersectionWorkspace:
     )
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_vertices(
     normals: FloatArray,
     offsets: FloatArray,
@@ -103,7 +103,7 @@ def fill_vertices(
     return collect(normals, offsets, work, used, vertices, triples)
 
 
-@kernel_noalloc
+@inner_kernel
 def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lists: PlaceArray) -> int:
     """Heights of all vertices above a plane; those above 0 are listed as dead, and counted."""
     x, y, z = normal
@@ -117,7 +117,7 @@ def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lis
     return count  # type: ignore[return-value]
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_tetrahedron(work: IntersectionWorkspace, n: int, reach: float) -> int:
     """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices.
 
@@ -144,7 +144,7 @@ def fill_tetrahedron(work: IntersectionWorkspace, n: int, reach: float) -> int:
     return v + 1  # no constant, for which numba would compile once more what is called with it
 
 
-@kernel_noalloc
+@inner_kernel
 def collect(
     normals: FloatArray,
     offsets: FloatArray,
@@ -182,7 +182,7 @@ def collect(
     return (FINE, count) if count == 2 * facets - 4 else (DEGENERATE, 0)
 
 
-@kernel_noalloc
+@inner_kernel
 def refine(
     normals: FloatArray,
     offsets: FloatArray,

@@ -9,7 +9,7 @@ from regolith_studio.coarsening.core.parts import Parts, Planes, parts_for
 from regolith_studio.coarsening.core.polyhedron_measures import add_force
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel_noalloc
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.vectors import along, mixed, row
 
@@ -163,7 +163,7 @@ def fill_shared_with_lines(
     return total * lines.weight
 
 
-@kernel_noalloc
+@inner_kernel
 def _add_line(
     normals: FloatArray,
     offsets: FloatArray,
@@ -214,7 +214,7 @@ def _add_line(
     return total
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_intervals(
     normals: FloatArray,
     offsets: FloatArray,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel, kernel_noalloc
 
 BLOCK = 256
 """Crossings that are worked out together: they stay in the fastest cache."""
@@ -71,7 +71,7 @@ def shared_by_planes(dual: FloatArray, crossings: FloatArray, weight: float) -> 
     return total * weight / 3.0
 
 
-@kernel_noalloc
+@inner_kernel
 def add_shared_charges(
     directions: FloatArray,
     first: IntArray,

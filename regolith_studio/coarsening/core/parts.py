@@ -17,7 +17,7 @@ from regolith_studio.coarsening.core.exposed_edges import (
 from regolith_studio.coarsening.core.intersection import FINE, IntersectionWorkspace, workspace_for
 from regolith_studio.coarsening.core.polyhedron_measures import add_vertex_charges, fill_measures
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
 EDGES_PER_PLANE = 40
@@ -141,7 +141,7 @@ def hull_for(v: int) -> Hull:
     )
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_union(
     normals: FloatArray,
     offsets: FloatArray,
@@ -187,7 +187,7 @@ def fill_union(
     return sound, count, volume, surface
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_corners(
     normals: FloatArray,
     offsets: FloatArray,
@@ -237,7 +237,7 @@ def _fill_corners(
     return True, count, links
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_meeting(parts: Parts) -> None:
     """Of which parts the surfaces intersect where they are exposed."""
     parts.meet[:, :] = False
@@ -250,7 +250,7 @@ def _fill_meeting(parts: Parts) -> None:
             parts.meet[one, two] = parts.meet[two, one] = True
 
 
-@kernel_noalloc
+@inner_kernel
 def _overlap(parts: Parts) -> bool:
     """Whether parts that are to touch overlap: the surfaces of two meet that no plane separates."""
     if parts.counts[TOUCHING] == 0:
@@ -266,7 +266,7 @@ def _overlap(parts: Parts) -> bool:
     return False
 
 
-@kernel_noalloc
+@inner_kernel
 def _is_one_body(areas: FloatArray, parts: Parts) -> bool:
     """Whether all parts that have an exposed surface hang together."""
     k, meet = len(parts.first) - 1, parts.meet
@@ -289,7 +289,7 @@ def _is_one_body(areas: FloatArray, parts: Parts) -> bool:
     return seen >= 0
 
 
-@kernel_noalloc
+@inner_kernel
 def add_union_surface_charges(
     normals: FloatArray, pivots: FloatArray, size: float, parts: Parts, charges: FloatArray
 ) -> None:
@@ -298,7 +298,7 @@ def add_union_surface_charges(
     add_exposed_surface_charges(normals, parts.ends[:count], parts.edge_planes[:count], pivots, size, charges)
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_hull(vertices: FloatArray, counts: IntArray, hull: Hull) -> float:
     """Fill the triangles of the hull of corners; its volume, 0 where it is flat."""
     v = len(vertices)
@@ -338,7 +338,7 @@ def fill_hull(vertices: FloatArray, counts: IntArray, hull: Hull) -> float:
     return _fill_area_vectors(spokes, m, hull)
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_area_vectors(points: FloatArray, m: int, hull: Hull) -> float:
     """Fill the normals of m triangles, and times their areas; the volume that they enclose."""
     volume = 0.0
@@ -353,7 +353,7 @@ def _fill_area_vectors(points: FloatArray, m: int, hull: Hull) -> float:
     return volume
 
 
-@kernel_noalloc
+@inner_kernel
 def add_hull_charges(
     normals: FloatArray,
     triples: IntArray,

@@ -24,7 +24,7 @@ from regolith_studio.coarsening.core.intersection import (
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 NO_AREA = 1e-14
@@ -108,7 +108,7 @@ def fill_measures(
     return status, count, volume, surface
 
 
-@kernel_noalloc
+@inner_kernel
 def _add_triangle(
     normals: FloatArray,
     offsets: FloatArray,
@@ -132,14 +132,14 @@ def _add_triangle(
         centroids[i, c] += area * (one[c] + two[c]) / 3.0
 
 
-@kernel_noalloc
+@inner_kernel
 def add_volume_charges(areas: FloatArray, size: float, charges: FloatArray) -> None:
     """Add `size` times the derivative of the volume, with the facets' centroids as pivots; charges (n, 4)."""
     for i in range(len(areas)):
         charges[i, 0] += size * areas[i]
 
 
-@kernel_noalloc
+@inner_kernel
 def add_surface_charges(
     normals: FloatArray,
     vertices: FloatArray,
@@ -163,7 +163,7 @@ def add_surface_charges(
             add_force(charges, edges[e, 2 + side], weight, mixed(p, 0.5, q, 0.5), pivots)
 
 
-@kernel_noalloc
+@inner_kernel
 def add_vertex_charges(
     normals: FloatArray,
     triples: IntArray,
@@ -189,7 +189,7 @@ def add_vertex_charges(
     add_force(charges, k, dot(force, ab) / det, at, pivots)
 
 
-@kernel_noalloc
+@inner_kernel
 def add_force(charges: FloatArray, i: int, weight: float, at: Vector, pivots: FloatArray) -> None:
     """Add a rate `weight` per unit of speed of plane i at a point."""
     charges[i, 0] += weight
@@ -246,14 +246,14 @@ def tangents_of(normals: FloatArray) -> FloatArray:
     return tangents
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_tilt_scales(areas: FloatArray, scales: FloatArray) -> None:
     """Fill rho of each plane: the radius of its facet, but not below :data:`MIN_TILT_SCALE`; shape (n,)."""
     for i in range(len(areas)):
         scales[i] = max(np.sqrt(max(areas[i], 0.0) / np.pi), MIN_TILT_SCALE)
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_moved(
     normals: FloatArray,
     pivots: FloatArray,
@@ -281,7 +281,7 @@ def fill_moved(
             turned[i, c], carried[i, 0, c], carried[i, 1, c] = normal[c], first[c], second[c]
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_gradient(
     charges: FloatArray, tangents: FloatArray, scales: FloatArray, gradient: FloatArray
 ) -> None:

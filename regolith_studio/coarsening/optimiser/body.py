@@ -45,7 +45,7 @@ from regolith_studio.coarsening.core.polyhedron_measures import (
     fill_tilt_scales,
 )
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import along, row
 
 VOLUME, SPHERICITY, SHORTEST, LONGEST, RATIO, HULL = 0, 1, 2, 3, 4, 5
@@ -175,7 +175,7 @@ def body_scratch(n: int) -> BodyScratch:
     )
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_body(body: Body, wanted: FloatArray, needs_box: bool, scratch: BodyScratch) -> bool:
     """Measure the half-spaces of a body against wanted values (6,); False where they bound no polyhedron.
 
@@ -193,7 +193,7 @@ def fill_body(body: Body, wanted: FloatArray, needs_box: bool, scratch: BodyScra
     return True
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_shape(body: Body, parts: Parts | None, scratch: BodyScratch) -> bool:
     """Vertices, facets, volume and surface area; False where there is no polyhedron."""
     normals, offsets, work = body.normals, body.offsets, scratch.intersection
@@ -218,7 +218,7 @@ def _fill_shape(body: Body, parts: Parts | None, scratch: BodyScratch) -> bool:
     return sound
 
 
-@kernel_noalloc
+@inner_kernel
 def _add_surface(body: Body, parts: Parts | None, size: float, charges: FloatArray) -> None:
     """Add `size` times the derivative of the surface area, shape (n, 4)."""
     if parts is None:
@@ -228,7 +228,7 @@ def _add_surface(body: Body, parts: Parts | None, size: float, charges: FloatArr
         add_union_surface_charges(body.normals, body.centroids, size, parts, charges)
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_hull_term(body: Body, parts: Parts | None, wanted: FloatArray, scratch: BodyScratch) -> bool:
     """Residual and row of CH of a union; False where its hull is flat."""
     if parts is not None:
@@ -245,7 +245,7 @@ def _fill_hull_term(body: Body, parts: Parts | None, wanted: FloatArray, scratch
     return True
 
 
-@kernel_noalloc
+@inner_kernel
 def cube_root_near_one(x: float) -> float:
     """Cube root by Newton's method, for 1e-3 < x < 1e3."""
     y = 1.0 if x < 8.0 else 4.0
@@ -257,7 +257,7 @@ def cube_root_near_one(x: float) -> float:
     return y
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_volume_and_sphericity(body: Body, wanted: FloatArray, scratch: BodyScratch) -> None:
     """Residuals and rows of V and S."""
     n, volume, surface = len(body.offsets), body.numbers[BODY_VOLUME], body.numbers[SURFACE]
@@ -278,7 +278,7 @@ def _fill_volume_and_sphericity(body: Body, wanted: FloatArray, scratch: BodyScr
         rows[SPHERICITY, j] = share * (2.0 / 3.0 * growth - rows[SPHERICITY, j])
 
 
-@kernel_noalloc
+@inner_kernel
 def _follow_boxes(body: Body, scratch: BodyScratch) -> None:
     """Bring every box to the local minimum near by; what is lost, or falls together, gets slack GONE."""
     vertices, owner, points = body.vertices[: body.counts[N_VERTICES]], scratch.owner, scratch.points
@@ -307,7 +307,7 @@ def _follow_boxes(body: Body, scratch: BodyScratch) -> None:
                 body.slack[b] = GONE
 
 
-@kernel_noalloc
+@inner_kernel
 def settle_box(body: Body, b: int, scratch: BodyScratch) -> bool:
     """Bring box `b`, of which only the axes are known, to the local minimum near by.
 
@@ -332,7 +332,7 @@ def settle_box(body: Body, b: int, scratch: BodyScratch) -> bool:
     return False
 
 
-@kernel_noalloc
+@inner_kernel
 def set_box(body: Body, b: int, scratch: BodyScratch) -> None:
     """Extents of a box, and the planes of the vertices that it touches."""
     contact, points = body.contacts[b], scratch.points
@@ -345,13 +345,13 @@ def set_box(body: Body, b: int, scratch: BodyScratch) -> None:
             body.planes[b, i, k] = body.triples[v, k]
 
 
-@kernel_noalloc
+@inner_kernel
 def box_volume(body: Body, b: int) -> float:
     """Of box `b`."""
     return body.extents[b, 0] * body.extents[b, 1] * body.extents[b, 2]  # type: ignore[no-any-return]
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_box_terms(body: Body, wanted: FloatArray, scratch: BodyScratch) -> None:
     """Residuals and rows of the measured box; slack and rows of the others."""
     rows, rivals, changes = body.rows, body.rival_rows, scratch.gradients
@@ -395,7 +395,7 @@ def fill_box_terms(body: Body, wanted: FloatArray, scratch: BodyScratch) -> None
                 _fill_tie(body, FIRST_TIE + 2 + end, 2 * high + end, wanted[LONGEST], scratch)
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_tie(body: Body, r: int, side: int, wanted: float, scratch: BodyScratch) -> None:
     """Residual and row of an edge of the measured box if it ended, on one side, at the next vertex.
 
@@ -427,7 +427,7 @@ def _fill_tie(body: Body, r: int, side: int, wanted: float, scratch: BodyScratch
     body.residuals[r] = extent / wanted - 1.0
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_charges(body: Body, contact: IntArray, forces: FloatArray, charges: FloatArray) -> None:
     """Charges of the planes for forces (9, 3) on the vertices of a row of contacts."""
     charges[:] = 0.0
@@ -437,7 +437,7 @@ def _fill_charges(body: Body, contact: IntArray, forces: FloatArray, charges: Fl
         add_vertex_charges(body.normals, body.triples, body.vertices, v, force, body.centroids, charges)
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_extent_gradients(body: Body, b: int, scratch: BodyScratch) -> None:
     """Fill the derivatives (3, 3 n) of the logarithms of a box's edges with the planes, in `scratch`."""
     points, forces = scratch.points, scratch.forces
@@ -450,7 +450,7 @@ def fill_extent_gradients(body: Body, b: int, scratch: BodyScratch) -> None:
         fill_gradient(charges, body.tangents, body.scales, gradients[k])
 
 
-@kernel_noalloc
+@inner_kernel
 def copy_boxes(source: Body, to: Body) -> None:
     """Let one body begin with the boxes of another."""
     to.counts[N_BOXES] = source.counts[N_BOXES]
@@ -466,7 +466,7 @@ def copy_boxes(source: Body, to: Body) -> None:
                 to.planes[b, i, c] = source.planes[b, i, c]
 
 
-@kernel_noalloc
+@inner_kernel
 def is_same_box(body: Body, one: int, two: int) -> bool:
     """Whether two boxes have the same volume and axes."""
     same = abs(box_volume(body, one) - box_volume(body, two)) < SAME_VOLUME * box_volume(body, one)

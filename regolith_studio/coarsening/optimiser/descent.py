@@ -45,7 +45,7 @@ from regolith_studio.coarsening.optimiser.quadratic_model import (
 )
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import exits
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 
 LOCK = 100.0
 """Price of a term that is kept exactly, in units of the Jaccard distance: multipliers of terms that can be
@@ -191,7 +191,7 @@ def fill_overlap(body: Body, parts: Parts | None, rays: RayTable | ScanLines, wo
     body.numbers[JACCARD] = 1.0 - shared / (1.0 + body.numbers[BODY_VOLUME] - shared)
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_overlap_gradient(
     body: Body,
     parts: Parts | None,
@@ -227,7 +227,7 @@ def fill_overlap_gradient(
     fill_gradient(charges, body.tangents, body.scales, gradient)
 
 
-@kernel_noalloc
+@inner_kernel
 def merit_of(body: Body, prices: Prices) -> float:
     """The loss as the descent sees it."""
     total = prices.overlap * body.numbers[JACCARD]
@@ -279,7 +279,7 @@ def _step(
     return min(gain, 0.0), length
 
 
-@kernel_noalloc
+@inner_kernel
 def gather_rows(body: Body, prices: Prices, work: Steps) -> int:
     """Rows of the terms, then those of the rivals: how many. What is not asked for has bounds of 0."""
     m, size = N_FIXED, work.rows.shape[1]
@@ -297,7 +297,7 @@ def gather_rows(body: Body, prices: Prices, work: Steps) -> int:
     return m
 
 
-@kernel_noalloc
+@inner_kernel
 def bounds_of(r: int, body: Body, prices: Prices) -> tuple[float, float]:
     """What the multiplier of a row may be; (0, 0) for one that takes no part."""
     if r < N_TERMS:
@@ -310,7 +310,7 @@ def bounds_of(r: int, body: Body, prices: Prices) -> tuple[float, float]:
     return 0.0, -prices.low[term] if term == SHORTEST else prices.high[term]
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_products(m: int, work: Steps) -> None:
     """Products of the metric with rows and gradient, and of these with the rows.
 
@@ -338,7 +338,7 @@ def fill_products(m: int, work: Steps) -> None:
             work.slopes[r] += work.rows[r, j] * work.across[m, j]
 
 
-@kernel_noalloc
+@inner_kernel
 def solve_step(m: int, radius: float, work: Steps) -> tuple[float, float]:
     """Fill the step, at most as long as `radius`: the decrease that the model predicts, and the length."""
     size, share, length = len(work.gradient), 1.0, 0.0
@@ -383,7 +383,7 @@ def solve_step(m: int, radius: float, work: Steps) -> tuple[float, float]:
     return (predicted, length) if length < np.inf else (0.0, 0.0)
 
 
-@kernel_noalloc
+@inner_kernel
 def move(
     here: Body, there: Body, step: FloatArray, prices: Prices, needs_box: bool, scratch: BodyScratch
 ) -> bool:
@@ -405,7 +405,7 @@ def move(
     return fill_body(there, prices.wanted, needs_box, scratch)
 
 
-@kernel_noalloc
+@inner_kernel
 def _carry_inner(source: Parts | None, there: Body, to: Parts | None) -> bool:
     """Take over the inner points of parts; without parts, whether the origin is inside."""
     if source is None or to is None:
@@ -419,7 +419,7 @@ def _carry_inner(source: Parts | None, there: Body, to: Parts | None) -> bool:
     return True
 
 
-@kernel_noalloc
+@inner_kernel
 def correct(
     there: Body,
     prices: Prices,
@@ -466,7 +466,7 @@ def correct(
     return worst < 1e-6
 
 
-@kernel_noalloc
+@inner_kernel
 def _gather_kinks(body: Body, prices: Prices, tied: float, work: Steps) -> tuple[int, float]:
     """Rows of the terms at a kink, in `work.across`, their residuals in `work.slopes`: number and largest.
 

@@ -27,7 +27,7 @@ from regolith_studio.coarsening.optimiser.body import (
     settle_box,
 )
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.minimum_box import (
     FIRST_FACETS,
     MANY_FACETS,
@@ -95,7 +95,7 @@ def box_memory(n: int, n_vertices: int) -> BoxMemory:
     )
 
 
-@kernel_noalloc
+@inner_kernel
 def find_smaller_box(
     vertices: FloatArray,
     normals: FloatArray,
@@ -135,7 +135,7 @@ def find_smaller_box(
     return bool(best.record[0] < known)
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_arcs(
     vertices: FloatArray, normals: FloatArray, edges: IntArray, points: FloatArray, memory: BoxMemory
 ) -> int:
@@ -162,7 +162,7 @@ def _fill_arcs(
     return count
 
 
-@kernel_noalloc
+@inner_kernel
 def _drop_edges(facets: Facets, arcs: FloatArray, table: SpanTable, count: int, memory: BoxMemory) -> int:
     """Leave out edges that no box below the best can be flush with, and facets that have such an edge."""
     memory.may_bound[:count] = False
@@ -186,7 +186,7 @@ UNDERCUT = 1e-7
 """A box smaller by more becomes a rival."""
 
 
-@kernel_noalloc
+@inner_kernel
 def check_boxes(
     body: Body, prices: Prices, start_axes: FloatArray, memory: BoxMemory, scratch: BodyScratch
 ) -> bool:
@@ -209,7 +209,7 @@ def check_boxes(
     return True
 
 
-@kernel_noalloc
+@inner_kernel
 def _find_smaller(body: Body, parts: Parts | None, known: float, memory: BoxMemory) -> bool:
     """Whether a box around the body, or the hull of its parts, is smaller than `known`."""
     vertices = body.vertices[: body.counts[N_VERTICES]]
@@ -222,7 +222,7 @@ def _find_smaller(body: Body, parts: Parts | None, known: float, memory: BoxMemo
     return found
 
 
-@kernel_noalloc
+@inner_kernel
 def add_box(body: Body, axes: FloatArray, scratch: BodyScratch) -> None:
     """Follow the box next to these axes too, unless it is followed; the largest rival may go for it."""
     n_boxes, at = body.counts[N_BOXES], body.counts[N_BOXES]
@@ -246,7 +246,7 @@ def add_box(body: Body, axes: FloatArray, scratch: BodyScratch) -> None:
         body.counts[N_BOXES] += 1
 
 
-@kernel_noalloc
+@inner_kernel
 def choose_box(body: Body, prices: Prices) -> None:
     """Put the box first that is to be measured."""
     least = np.inf
@@ -270,7 +270,7 @@ def choose_box(body: Body, prices: Prices) -> None:
         swap_boxes(body, at)
 
 
-@kernel_noalloc
+@inner_kernel
 def swap_boxes(body: Body, b: int) -> None:
     """Exchange the first box with box `b`."""
     for axis in range(3):

@@ -29,7 +29,7 @@ from regolith_studio.coarsening.optimiser.body import (
 )
 from regolith_studio.coarsening.optimiser.memory import Steps
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import along, cross, dot, mixed, row
 
 CURVATURE = 0.03
@@ -41,7 +41,7 @@ RIDGE, NEAR_SURFACE = 10.0, 1.5
 the two surfaces count for them."""
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_first_metric(
     body: Body, rays: RayTable | ScanLines, price: float, held: int, steady: bool, work: Steps
 ) -> None:
@@ -66,7 +66,7 @@ def fill_first_metric(
             _fill_metric_of_plane(i, price, work)
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_curvature(
     body: Body, parts: Parts | None, rays: RayTable | ScanLines, floor: float, work: Steps
 ) -> None:
@@ -108,7 +108,7 @@ def fill_curvature(
                     curvature[i, b, c] = parts.curvature[i, b, c] / union + (SOFTNESS if b == c else 0.0)
 
 
-@kernel_noalloc
+@inner_kernel
 def _fill_metric_of_plane(i: int, price: float, work: Steps) -> None:
     """The inverse second derivative for half-space i alone."""
     block = work.curvature[i]
@@ -122,7 +122,7 @@ def _fill_metric_of_plane(i: int, price: float, work: Steps) -> None:
         work.diagonal[3 * i + b] = work.metric[3 * i + b, 3 * i + b]
 
 
-@kernel_noalloc
+@inner_kernel
 def is_free(i: int, parts: Parts | None) -> bool:
     """Whether half-space i may move: those between parts that touch may not."""
     free = True
@@ -131,7 +131,7 @@ def is_free(i: int, parts: Parts | None) -> bool:
     return free
 
 
-@kernel_noalloc
+@inner_kernel
 def update_metric(here: Body, there: Body, m: int, work: Steps) -> None:
     """BFGS update of the inverse second derivative of the Lagrangian, where its curvature is positive."""
     size = len(work.gradient)
@@ -161,7 +161,7 @@ def update_metric(here: Body, there: Body, m: int, work: Steps) -> None:
             work.metric[i, j] += scale * one * work.total[j] - two * work.total[j] - one * turned[j] / product
 
 
-@kernel_noalloc
+@inner_kernel
 def _add_row_changes(here: Body, there: Body, m: int, work: Steps) -> None:
     """Add the multipliers' share of the change of the Lagrangian's gradient."""
     size = len(work.change)
@@ -184,7 +184,7 @@ DEPENDENT = 1e-13
 """Added to the diagonal, relative to it: terms may depend on each other, as AR on both edges."""
 
 
-@kernel_noalloc
+@inner_kernel
 def fill_multipliers(
     products: FloatArray,
     slopes: FloatArray,
@@ -207,7 +207,7 @@ def fill_multipliers(
         _solve_free(products, slopes, residuals, low, high, share, factor, multipliers)
 
 
-@kernel_noalloc
+@inner_kernel
 def _sweep(
     products: FloatArray,
     slopes: FloatArray,
@@ -233,7 +233,7 @@ def _sweep(
     return largest
 
 
-@kernel_noalloc
+@inner_kernel
 def _solve_free(
     products: FloatArray,
     slopes: FloatArray,
@@ -298,7 +298,7 @@ def _solve_free(
                 i += 1
 
 
-@kernel_noalloc
+@inner_kernel
 def solve_in_place(system: FloatArray) -> bool:
     """Solve a symmetric positive semidefinite system (m, m + 1), the right-hand side last, by Cholesky.
 

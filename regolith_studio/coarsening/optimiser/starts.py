@@ -11,7 +11,7 @@ from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.half_spaces import HalfSpaces, exits
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 TIE_BREAK = 1e-7
@@ -254,7 +254,7 @@ def fill_groups(
     _fill_heights(areas, middles, group, means, sums, heights)
 
 
-@kernel
+@inner_kernel
 def _fill_heights(
     areas: FloatArray,
     middles: FloatArray,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel_noalloc
 from regolith_studio.geometry.minimum_box.edge_pair import (
     Curve,
     Quartic,
@@ -87,7 +87,7 @@ def empty_record(known: float) -> BestBox:
     return BestBox(np.array([known, np.inf]), np.zeros((3, 3)), np.empty((DEPTH, 2)))
 
 
-@kernel_noalloc
+@inner_kernel
 def update_if_smaller(
     long: float, wide: float, high: float, a: Vector, b: Vector, c: Vector, best: BestBox
 ) -> float:
@@ -243,7 +243,7 @@ def search_pairs(
                 _search_curve(facets, arcs, table, (i, k), ends[number], margin, best)
 
 
-@kernel_noalloc
+@inner_kernel
 def _curve_ends(dots: FloatArray, three: int, four: int, ends: FloatArray) -> int:
     """Ends of the curves on which a of one arc and b of another are orthogonal; how many curves there are.
 
@@ -282,7 +282,7 @@ def _curve_ends(dots: FloatArray, three: int, four: int, ends: FloatArray) -> in
     return n // 2
 
 
-@kernel_noalloc
+@inner_kernel
 def _search_curve(
     facets: Facets,
     arcs: FloatArray,
@@ -315,7 +315,7 @@ def _search_curve(
         min_on_curve(points, table, curve, edges[i, 0], edges[k, 0], margin, best)
 
 
-@kernel_noalloc
+@inner_kernel
 def min_on_curve(
     points: FloatArray, table: SpanTable, curve: Curve, foot_a: int, foot_b: int, margin: float, best: BestBox
 ) -> tuple[float, float]:
@@ -374,13 +374,13 @@ def min_on_curve(
     return least if least <= best.record[0] * (1.0 + margin) else np.inf, at
 
 
-@kernel_noalloc
+@inner_kernel
 def _limit(best: BestBox, margin: float, least: float) -> float:
     """Boxes on this curve that are not smaller are of no interest."""
     return float(min(best.record[0] * (1.0 + margin), least * (1.0 - EQUAL)))
 
 
-@kernel_noalloc
+@inner_kernel
 def _look(points: FloatArray, curve: Curve, x: float, best: BestBox) -> tuple[float, Contacts]:
     """Volume of the box at x, and the vertices across from the edges and at both ends of the third axis."""
     a, b, c = frame_on(curve, x)
@@ -392,7 +392,7 @@ def _look(points: FloatArray, curve: Curve, x: float, best: BestBox) -> tuple[fl
     return volume, (across_a, across_b, max(top, bottom), min(top, bottom))
 
 
-@kernel_noalloc
+@inner_kernel
 def _held(
     points: FloatArray,
     foot_a: int,

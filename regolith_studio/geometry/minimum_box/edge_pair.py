@@ -12,7 +12,7 @@ are positive, N - limit D is not negative where its Bernstein coefficients are n
 
 from typing import NamedTuple
 
-from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed
 
 MIN_LEVER = 1e-9
@@ -58,19 +58,19 @@ class Quartic(NamedTuple):
     k4: float
 
 
-@inline_kernel
+@inner_kernel
 def unit(vector: Vector) -> Vector:
     """The vector at length 1."""
     return scaled(vector, 1.0 / length(vector))
 
 
-@inline_kernel
+@inner_kernel
 def scaled(vector: Vector, share: float) -> Vector:
     """``share * vector``."""
     return share * vector[0], share * vector[1], share * vector[2]
 
 
-@kernel_noalloc
+@inner_kernel
 def curve_between(
     edge_a: Vector, edge_b: Vector, a_from: Vector, b_from: Vector, a_to: Vector, b_to: Vector
 ) -> Curve:
@@ -94,7 +94,7 @@ def curve_between(
     return Curve(a, a_turn, b, b_turn, p, q, r, min(one, two), max(one, two))
 
 
-@kernel_noalloc
+@inner_kernel
 def directions_on(curve: Curve, x: float) -> tuple[Vector, Vector, Vector]:
     """The three axes at x, longer than 1."""
     y = -curve.p * x / (curve.q + curve.r * x)
@@ -102,7 +102,7 @@ def directions_on(curve: Curve, x: float) -> tuple[Vector, Vector, Vector]:
     return a, b, cross(a, b)
 
 
-@kernel_noalloc
+@inner_kernel
 def frame_on(curve: Curve, x: float) -> tuple[Vector, Vector, Vector]:
     """The three unit axes at x."""
     a, b, _ = directions_on(curve, x)
@@ -110,7 +110,7 @@ def frame_on(curve: Curve, x: float) -> tuple[Vector, Vector, Vector]:
     return a, b, cross(a, b)
 
 
-@kernel_noalloc
+@inner_kernel
 def factors_of(curve: Curve, span_a: Vector, span_b: Vector, span_c: Vector, x: float) -> Factors:
     """Distances between points along the three axes; spans are the points' differences.
 
@@ -133,7 +133,7 @@ def factors_of(curve: Curve, span_a: Vector, span_b: Vector, span_c: Vector, x: 
     return Factors(a0, a1, b0, b1, c0, c1, c2)
 
 
-@kernel_noalloc
+@inner_kernel
 def numerator(factors: Factors) -> Quartic:
     """N: the product of the three distances."""
     a0, a1, b0, b1, c0, c1, c2 = factors
@@ -141,7 +141,7 @@ def numerator(factors: Factors) -> Quartic:
     return Quartic(m0 * c0, m0 * c1 + m1 * c0, m0 * c2 + m1 * c1 + m2 * c0, m1 * c2 + m2 * c1, m2 * c2)
 
 
-@kernel_noalloc
+@inner_kernel
 def denominator(curve: Curve) -> Quartic:
     """D: what the lengths of a(x) and b(y) divide the product by, (1 + x^2) ((q + r x)^2 + p^2 x^2)."""
     p, q, r = curve.p, curve.q, curve.r
@@ -149,19 +149,19 @@ def denominator(curve: Curve) -> Quartic:
     return Quartic(q * q, 2.0 * q * r, q * q + last, 2.0 * q * r, last)
 
 
-@inline_kernel
+@inner_kernel
 def value(f: Quartic, x: float) -> float:
     """The polynomial at x."""
     return f.k0 + x * (f.k1 + x * (f.k2 + x * (f.k3 + x * f.k4)))
 
 
-@inline_kernel
+@inner_kernel
 def derivative(f: Quartic, x: float) -> float:
     """Its derivative at x."""
     return f.k1 + x * (2.0 * f.k2 + x * (3.0 * f.k3 + x * 4.0 * f.k4))
 
 
-@kernel_noalloc
+@inner_kernel
 def all_positive(factors: Factors, low: float, high: float) -> bool:
     """Whether the three distances are positive on an interval; False where that is not certain."""
     a0, a1, b0, b1, c0, c1, c2 = factors
@@ -172,7 +172,7 @@ def all_positive(factors: Factors, low: float, high: float) -> bool:
     return bool(min(ends, c0 + 0.5 * c1 * (low + high) + c2 * low * high) > 0.0)
 
 
-@kernel_noalloc
+@inner_kernel
 def is_above_limit(top: Quartic, bottom: Quartic, limit: float, low: float, high: float) -> bool:
     """Whether all Bernstein coefficients of top - limit * bottom on an interval are at least 0."""
     k0, k1, k2 = top.k0 - limit * bottom.k0, top.k1 - limit * bottom.k1, top.k2 - limit * bottom.k2
@@ -187,7 +187,7 @@ def is_above_limit(top: Quartic, bottom: Quartic, limit: float, low: float, high
     return bool(min(min(t0, t0 + t1 / 4.0), min(middle, t0 + t1 + t2 + t3 + t4)) >= 0.0)
 
 
-@kernel_noalloc
+@inner_kernel
 def argmin_ratio(top: Quartic, bottom: Quartic, low: float, high: float) -> float:
     """Where top / bottom is least on an interval with one minimum; else some place that tends to it."""
     at_low = derivative(top, low) * value(bottom, low) - value(top, low) * derivative(bottom, low)
@@ -209,7 +209,7 @@ def argmin_ratio(top: Quartic, bottom: Quartic, low: float, high: float) -> floa
     return x
 
 
-@kernel_noalloc
+@inner_kernel
 def crossing(one: Quartic, two: Quartic, low: float, high: float) -> float:
     """Where two polynomials are equal, between places where different ones are larger; else the middle."""
     f_low, f_high = value(one, low) - value(two, low), value(one, high) - value(two, high)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inner_kernel, kernel_noalloc
 from regolith_studio.geometry.minimum_box.edge_pair import unit
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
@@ -28,7 +28,7 @@ class SpanTable(NamedTuple):
     cells: int
 
 
-@kernel_noalloc
+@inner_kernel
 def extreme_vertices(points: FloatArray, direction: Vector) -> tuple[int, int]:
     """The vertices farthest along and against `direction`, the first of equal ones; points (3, n)."""
     x, y, z = direction
@@ -42,7 +42,7 @@ def extreme_vertices(points: FloatArray, direction: Vector) -> tuple[int, int]:
     return top, bottom
 
 
-@inline_kernel
+@inner_kernel
 def between(points: FloatArray, one: int, two: int) -> Vector:
     """Vector from vertex `two` to vertex `one`."""
     return points[0, one] - points[0, two], points[1, one] - points[1, two], points[2, one] - points[2, two]
@@ -102,7 +102,7 @@ def cell_directions(cells: int) -> FloatArray:
     return directions.reshape(3, -1)
 
 
-@inline_kernel
+@inner_kernel
 def span_near(table: SpanTable, direction: Vector) -> Vector:
     """A vector between two vertices that is nearly as long along `direction` as the solid is wide."""
     x, y, z = direction
@@ -255,7 +255,7 @@ def arcs_of(facets: Facets) -> FloatArray:
     return arcs
 
 
-@kernel_noalloc
+@inner_kernel
 def min_third_extent(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
     """A bound on the width across two sides that are flush with edges i and k; 0 where there is no use in it.
 
@@ -318,7 +318,7 @@ def fill_edges_that_may_bound(
                 break
 
 
-@kernel_noalloc
+@inner_kernel
 def facet_excluded(table: SpanTable, axis: Vector, height: float, limit: float) -> bool:
     """Whether no box below the limit has a side normal to an axis, along which the solid is `height` wide.
 
@@ -347,7 +347,7 @@ def facets_with_all_edges(facets: Facets, kept: BoolArray) -> BoolArray:
     return asked
 
 
-@inline_kernel
+@inner_kernel
 def _after_turn(span: Vector, direction: Vector, cosine: float, sine: float) -> float:
     """Least length of a span along a direction that turns by at most an angle of this cosine and sine."""
     here = abs(dot(span, direction))

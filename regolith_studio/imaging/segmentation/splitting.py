@@ -27,7 +27,7 @@ from scipy.sparse import csgraph
 from skimage import segmentation
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.imaging.connected_components import ConnectedComponents, pores_filled
 from regolith_studio.imaging.settings import SplittingSettings, TileSettings
 from regolith_studio.imaging.volume import Box, box_between, grown, n_voxels, within
@@ -81,7 +81,7 @@ def find_basins(heights: NDArray[np.float32], step_lengths: FloatArray) -> "Wate
     return WatershedBasins(inner, sites, flat[founders].astype(np.float64), pairs, ridges[:, 0], ridges[:, 1])
 
 
-@kernel
+@inner_kernel
 def _root(parents: NDArray[np.int32], basin: int) -> int:
     while parents[basin] != basin:
         parents[basin] = parents[parents[basin]]
