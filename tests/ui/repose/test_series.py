@@ -186,3 +186,23 @@ def test_that_a_calibration_says_what_it_lacks(page, dataset):
         page.calibration.setValue({"key": "static_friction", "range": words})
         page.calibrations.start()
         assert sentence in page._context.toast.sentence.text()
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("threads")
+def test_that_runs_without_an_angle_end_a_calibration_without_a_value(page, dataset, wait, monkeypatch):
+    def no_angle(dataset, place, request):  # noqa: ARG001
+        yield Progress(1, 1)
+        measured = {"status": "no flanks"}
+        return {"state": "finished", "case": {"seed": request.case.seed}, "measurement": measured}
+
+    monkeypatch.setattr("regolith_studio.jobs.repose_calibration.simulate_study_run", no_angle)
+    small(page, dataset)
+    page.calibration.setValue({"runs": 3})
+    page.commands()["start_calibration"]()
+    wait(lambda: not page.busy(), 20.0)
+    card = page.calibration.card
+    assert "3 of 3 runs formed a heap without a measurable angle." in card.sentence.text()
+    assert "No run can be used, so that there is no value" in card.sentence.text()
+    assert [figure.text() for figure in card.figures] == ["–", "–"]
+    assert page.calibration.prediction.curves == page.calibration.posterior.curves == ()
