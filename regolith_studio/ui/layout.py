@@ -149,7 +149,7 @@ def left_aligned(part: QWidget) -> QWidget:
 
 def dialog_buttons(dialog: QDialog, *accepting: QDialogButtonBox.StandardButton) -> QDialogButtonBox:
     """The buttons below a dialog: those that accept it with Cancel, or Close alone."""
-    box = QDialogButtonBox(parent=dialog)
+    box = QDialogButtonBox()  # its layout adds it after what is above, so that the focus begins there
     kinds = QDialogButtonBox.StandardButton
     for kind in (*accepting, kinds.Cancel) if accepting else (kinds.Close,):
         box.addButton(kind)

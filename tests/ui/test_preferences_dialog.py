@@ -46,3 +46,10 @@ def test_that_preferences_hold_at_once_or_at_the_next_start(opened, wait):
 def test_that_preferences_that_make_no_sense_are_the_usual_ones(shown):
     dialog = shown(PreferencesDialog({"language": "tlh", "theme": 4, "font_size": "huge"}))
     assert dialog.value() == {"language": "system", "theme": "system", "font_size": 100}
+
+
+def test_that_preferences_begin_at_their_first_field(shown, app):
+    dialog = shown(PreferencesDialog({}))
+    dialog.activateWindow()
+    app.processEvents()
+    assert dialog.focusWidget() is dialog.language

@@ -147,7 +147,6 @@ class UnitDialog(GrowingDialog):
         self.size_note.setText(tr("Reading particles"))
         self._open.setEnabled(False)  # else a unit could be taken before the size is known that corrects it
         self._open.setDefault(True)
-        self.unit.setFocus()  # else Cancel has it, and Return
 
     @property
     def can_open(self) -> bool:
