@@ -265,7 +265,8 @@ class ResultView(QFrame):
     def _outer_width(self) -> int:
         """Width of the margins, and of the buttons at the end with the space before them."""
         margins = self._row.contentsMargins()
-        ends = sum(each.minimumSizeHint().width() + self._row.spacing() for each in self._ends)
+        widths = (max(each.minimumWidth(), each.minimumSizeHint().width()) for each in self._ends)
+        ends = sum(width + self._row.spacing() for width in widths)
         return margins.left() + margins.right() + ends
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -89,8 +89,8 @@ def test_that_no_control_of_explore_moves_with_particle_degree_method_and_outcom
         watched.does(str(changes), lambda changes=changes: session.choose(**changes))
     for at in range(page.loss.preset.count()):
         watched.does(page.loss.preset.itemText(at), page.loss.bar.chosen.emit, page.loss.preset.itemData(at))
-    watched.does("a reason", page.coarsening.set_outcome, "None has so few facets. " * 20)
-    watched.does("no reason", page.coarsening.set_outcome, None)
+    watched.does("a reason", page.outcome.set_sentence, "None has so few facets. " * 20)
+    watched.does("no reason", page.outcome.set_sentence, None)
     watched.does("no fit", page.fit.set_findings, None)
 
 
