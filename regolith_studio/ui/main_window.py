@@ -94,7 +94,7 @@ class MainWindow(QMainWindow):
             **{name: getattr(self.commands, name) for name in (*ours, *copying)},
             **{f"theme_{name}": partial(self.appearance.choose, theme=name) for name in ("system", *THEMES)},
             **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
-            "export": partial(self.go, "dataset"),
+            "export": partial(self.pages.run, "dataset", "formats"),
             "run_batch": self.batches.ask,
             "report": self.reports.ask,
             "save_project": self.projects.save,

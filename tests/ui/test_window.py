@@ -170,6 +170,9 @@ def test_that_volumes_datasets_cards_and_exports_go_to_their_pages(window, tmp_p
     window.menus.by_name["export"].trigger()
     assert window.pages.current == "dataset"
     assert window.page.targets.export.isEnabled()
+    first = window.page.targets.first
+    assert window.focusWidget() is first
+    assert not first.visibleRegion().isEmpty()
     opened = []
     for key in ("scan", "dataset", "model"):
         page = window.go(key)

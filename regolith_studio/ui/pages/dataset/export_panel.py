@@ -95,6 +95,7 @@ class ExportPanel(QWidget):
             for title, keys in groups().items()
             for part in (hint_label(tr(title)), *(self.boxes[key] for key in keys))
         ]
+        self.first = self.boxes[next(iter(groups().values()))[0]]
         more = Collapsible(tr("Material and cylinder"), *parts)
         vbox(heading(tr("4  Export to")), *formats, form, more, parent=self, spacing=4)
         self.foot = QWidget()

@@ -133,6 +133,7 @@ class DatasetPage(PageWidget):
             "open_dataset": self.open_dataset,
             "validate": self.validate,
             "export": self.export,
+            "formats": self.go_to_formats,
         }
 
     def panels(self) -> Mapping[str, ValuePanel]:
@@ -319,6 +320,11 @@ class DatasetPage(PageWidget):
             return
         job = Job(validate_dataset_folder, (self._folder,))
         self._context.start(tr("Checking the dataset"), job, self._report_problems, queue="validate")
+
+    def go_to_formats(self) -> None:
+        """Give the focus to the first format."""
+        self._column.ensureWidgetVisible(self.targets.first)
+        self.targets.first.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def export(self) -> None:
         """Ask for a folder, and write the selected formats there, and the dataset unless it is written."""
@@ -578,8 +584,9 @@ class DatasetPage(PageWidget):
 
     def _place(self) -> None:
         controls = QWidget()
+        self._column = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         vbox(
-            (scrolled_column((self.representatives, self.sizes, self.folder, self.targets)), 1),
+            (self._column, 1),
             self.targets.foot,
             parent=controls,
             spacing=0,
