@@ -201,7 +201,9 @@ def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_o
     wait(page.drawing.draw.isEnabled)
     page.drawing.draw.click()
     fitted = page._fitted
-    page._context.commands.adopt = lambda made, origin: session.adopt(made, origin=origin) or True
+    commands = page._context.commands
+    commands.ask_before_making = lambda: "replace"
+    commands.adopt = lambda made, origin, _answer: session.adopt(made, origin=origin) or True
     page.drawing.adopt.click()
     wait(lambda: page.source.source.itemText(0) == "Open particles (2)")
     assert (
