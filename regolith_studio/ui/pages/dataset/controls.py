@@ -1,10 +1,10 @@
 """The controls of the page: representatives, sizes and folder."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QLineEdit,
     QPushButton,
@@ -19,7 +19,7 @@ from regolith_studio.jobs.dataset_jobs import RepresentativesRequest
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.settings import setting_of
-from regolith_studio.ui.layout import STRETCH, hbox, named, vbox
+from regolith_studio.ui.layout import STRETCH, hbox, named, scrolled_column, vbox
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fields import NumberSlider, NumbersLine, NumberSpec, choice
@@ -220,14 +220,25 @@ class FolderPanel(QWidget):
         return file_stem("_".join(self.name.text().split()) or "dataset")
 
 
-@dataclass(frozen=True)
-class DatasetControls:
+class DatasetControls(QWidget):
     """The panels at the right of the page, set from a recipe and converted to one."""
 
-    representatives: RepresentativesPanel
-    sizes: SizesPanel
-    folder: FolderPanel
-    targets: ExportPanel
+    def __init__(
+        self,
+        representatives: RepresentativesPanel,
+        sizes: SizesPanel,
+        folder: FolderPanel,
+        targets: ExportPanel,
+    ) -> None:
+        super().__init__()
+        self.representatives, self.sizes, self.folder, self.targets = representatives, sizes, folder, targets
+        self._column = scrolled_column((representatives, sizes, folder, targets))
+        vbox((self._column, 1), targets.foot, parent=self, spacing=0)
+
+    def go_to_formats(self) -> None:
+        """Give the focus to the first format."""
+        self._column.ensureWidgetVisible(self.targets.first)
+        self.targets.first.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def show_recipe(self, opened: DatasetRequest) -> None:
         if recipe := opened.representatives:

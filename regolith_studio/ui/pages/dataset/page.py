@@ -41,7 +41,6 @@ from regolith_studio.ui.layout import (
     framed,
     hbox,
     scrolled,
-    scrolled_column,
     stacked,
     tabs,
     vbox,
@@ -133,7 +132,7 @@ class DatasetPage(PageWidget):
             "open_dataset": self.open_dataset,
             "validate": self.validate,
             "export": self.export,
-            "formats": self.go_to_formats,
+            "formats": lambda: self._controls.go_to_formats(),
         }
 
     def panels(self) -> Mapping[str, ValuePanel]:
@@ -320,11 +319,6 @@ class DatasetPage(PageWidget):
             return
         job = Job(validate_dataset_folder, (self._folder,))
         self._context.start(tr("Checking the dataset"), job, self._report_problems, queue="validate")
-
-    def go_to_formats(self) -> None:
-        """Give the focus to the first format."""
-        self._column.ensureWidgetVisible(self.targets.first)
-        self.targets.first.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def export(self) -> None:
         """Ask for a folder, and write the selected formats there, and the dataset unless it is written."""
@@ -583,14 +577,6 @@ class DatasetPage(PageWidget):
         self.folder.name.textChanged.connect(lambda _: self._update_request())
 
     def _place(self) -> None:
-        controls = QWidget()
-        self._column = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
-        vbox(
-            (self._column, 1),
-            self.targets.foot,
-            parent=controls,
-            spacing=0,
-        )
         for plot in (self.quality, self.distribution):
             plot.fit_to_font()
         upper = equal_parts(Qt.Orientation.Horizontal, (framed(self.quality), framed(self.distribution)))
@@ -602,6 +588,6 @@ class DatasetPage(PageWidget):
         middle.setObjectName("dataset_middle")
         results = QWidget()
         vbox(self.result, (middle, 1), parent=results, margins=(10, 10, 2, 8))
-        whole = FoldingSplitter(results, controls, (1200, 320))
+        whole = FoldingSplitter(results, self._controls, (1200, 320))
         whole.setObjectName("dataset_whole")
         hbox(whole, parent=self)
