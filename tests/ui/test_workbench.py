@@ -145,6 +145,7 @@ def test_that_results_which_a_project_makes_again_are_no_changes(window, wait, t
     assert not any(seen)
     window.session.choose(n_facets=31)
     assert window.projects.modified
+    wait(lambda: not window.session.tasks, SECONDS)
 
 
 def test_that_what_another_window_has_saved_is_not_replaced_without_asking(bare, tmp_path, monkeypatch):
