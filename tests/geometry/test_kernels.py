@@ -175,21 +175,22 @@ NUMBERS = re.compile(r"None|(int|float|bool)|tuple\[(int|float|bool)(, (int|floa
 
 
 @kernels.inner_kernel
-def half(x: int) -> float:
-    """Half of a number."""
-    return x / 2
+def inverse(x: float) -> float:
+    """One over a number."""
+    return 1.0 / x
 
 
 @kernels.kernel
-def quarter(x: int) -> float:
-    """Half of a half."""
-    return half(x) / 2
+def inverse_of_difference(x: float, y: float) -> float:
+    """One over a difference."""
+    return inverse(x - y)
 
 
 def test_that_a_kernel_without_an_entry_is_compiled_for_kernels_and_runs_as_written_for_python() -> None:
-    assert quarter(7) == 1.75
-    assert half(7) == 3.5
-    assert len(half.signatures) == 1  # type: ignore[attr-defined]
+    assert inverse_of_difference(2.0, 2.0) == np.inf
+    assert inverse(4.0) == 0.25
+    with pytest.raises(ZeroDivisionError):
+        inverse(0.0)
 
 
 @pytest.mark.slow
