@@ -24,7 +24,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.kernels import inner_kernel, kernel
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import SphereGrid, ring_basis, sphere_grid
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.settings import setting
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
@@ -342,5 +342,6 @@ def measured_surfaces(sample: Sample, settings: SurfaceSettings, n_neighbours: i
             f"{n_neighbours} and {settings.size_jitter:g}."
         )
     if settings.l_max < 1:
-        raise InputError(f"Particles that can be turned need l_max of at least 1, got {settings.l_max}.")
+        sentence = N_("Particles that can be turned need l_max of at least 1, got {l_max}.")
+        raise InputError(Message(sentence, l_max=settings.l_max))
     return MappedSurfaces.of(sample, settings.l_max)

@@ -4292,8 +4292,8 @@
         <translation>Gezeigte Partikel</translation>
     </message>
     <message>
-        <source>Particles that can be turned need l_max of at least 1, got 0.</source>
-        <translation>Partikel, die gedreht werden können, brauchen l_max von mindestens 1, hier 0.</translation>
+        <source>Particles that can be turned need l_max of at least 1, got {l_max}.</source>
+        <translation>Partikel, die gedreht werden können, brauchen l_max von mindestens 1, hier {l_max}.</translation>
     </message>
     <message>
         <source>Parts overlap or touch</source>

@@ -55,8 +55,6 @@ from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.toast import Toast
 
 MODEL_FILES, CARD_FILES = N_("Models (*.json)"), N_("Cards (*.json)")
-REFUSALS = (N_("Particles that can be turned need l_max of at least 1, got 0."),)
-"""Sentences of models whose modules do not mark them for translation."""
 
 
 def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
